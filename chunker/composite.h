@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The over-only compositor [LS97 1.1, 3]: warped sprites, back to front, into one frame, 32 lines at a time.
+///
+///   C ← S + C · (1 - αS)       per channel, premultiplied, 16-bit linear; "+" is over with αS = 0
+///
+/// For each band only the sprites that touch it are visited; each is sampled bilinearly under its map (perspective divides per
+/// pixel), clear chunks are skipped, opaque runs replace. Bands are independent jobs; the bytes do not depend on their order.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chunker/sprite.h"
+#include "warp/warp.h"
+
+namespace talisman::chunker {
+
+struct PlacedSprite {
+  const Sprite* sprite = nullptr;
+  layers::dmat3 screen_from_sprite{1.0};   ///< warp ∘ placement; third row (0 0 1) unless perspective
+  layers::vec3 color_multiplier{1, 1, 1};  ///< 0 … 1 per channel
+  float alpha_multiplier = 1;              ///< 0 … 1, scales all four channels
+};
+
+/// A finished picture, 16-bit linear premultiplied over an opaque background (alpha is always kOne).
+struct Frame {
+  int width = 0, height = 0;
+  std::vector<Linear16> pixels;            ///< row by row
+};
+
+struct CompositeCounters {
+  std::int64_t sprite_bands = 0;           ///< sprite–band pairs visited
+  std::int64_t pixels_composited = 0;      ///< display pixels inside sprite rectangles, summed over sprites
+  std::int64_t chunks_skipped_clear = 0;   ///< pixel runs skipped because the sprite is clear there
+};
+
+struct CompositeResult {
+  Frame frame;
+  CompositeCounters counters;
+};
+
+/// Sprites back to front over `background` (linear 0 … 1). A map that is singular or not finite shows nothing.
+CompositeResult composite(std::span<const PlacedSprite> sprites, layers::ivec2 display_px, layers::vec3 background);
+
+/// sRGB bytes, 3 per pixel.
+std::vector<std::uint8_t> srgb_bytes(const Frame& frame);
+
+}  // namespace talisman::chunker

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Sprites in chunks [LS97 1.1]: the picture of a layer, stored as whole 32×32 chunks. A chunk in which nothing was drawn is
+/// not stored. Byte counts are those of the stored chunks plus one reference per chunk.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "chunker/pixel.h"
+#include "layers/sprite_transform.h"
+
+namespace talisman::chunker {
+
+/// 32×32 texels, row by row.
+struct Chunk {
+  Texel texels[kChunkSize * kChunkSize];
+};
+
+class Sprite {
+ public:
+  Sprite() = default;
+  /// A clear sprite of `size_px` texels (each ≥ 0).
+  explicit Sprite(layers::ivec2 size_px);
+
+  layers::ivec2 size_px() const { return size_px_; }
+  layers::ivec2 chunks() const { return chunks_; }         ///< columns, rows
+  /// The stored chunk at (column, row), or null where it is clear.
+  const Chunk* chunk(int column, int row) const;
+  /// Stores a chunk unless it is clear (then drops what was there). Texels outside size_px must be clear.
+  /// Different chunks may be stored from different threads only through `assemble`.
+  void store(int column, int row, const Chunk& chunk);
+
+  Texel texel(int x, int y) const;                         ///< clear outside
+  std::int64_t stored_chunks() const;
+  std::int64_t clear_chunks() const;
+  std::int64_t bytes() const;                              ///< stored chunks and references
+
+ private:
+  layers::ivec2 size_px_{0, 0};
+  layers::ivec2 chunks_{0, 0};
+  std::vector<std::int32_t> reference_;                    ///< index into storage_, -1: clear
+  std::vector<Chunk> storage_;
+};
+
+/// The sprites that are alive, one per layer id.
+class SpriteStore {
+ public:
+  void put(int layer, Sprite sprite);
+  const Sprite* find(int layer) const;                     ///< null if there is none
+  void drop(int layer);
+  std::int64_t bytes() const;
+
+ private:
+  std::vector<Sprite> sprites_;
+  std::vector<bool> alive_;
+};
+
+}  // namespace talisman::chunker

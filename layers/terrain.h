@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Height-map terrain, cut into segments [LS97 7.2: split landscape, expanded along the split].
+///
+/// A grid of heights becomes meshes of at most `cells_per_segment` rows each. Adjacent segments overlap by `seam_cells` rows so that
+/// small separations of their warped sprites do not open a crack. Grid column 0 … is x, row 0 … is -z (rows run away from a viewer who
+/// looks along -z); both are centred in x and start at z = 0.
+
+#include <vector>
+
+#include "layers/scene.h"
+
+namespace talisman::layers {
+
+struct HeightField {
+  int columns = 0, rows = 0;          ///< samples, ≥ 2 each
+  std::vector<float> heights_m;       ///< row by row
+  float cell_x_m = 1, cell_z_m = 1;   ///< distance of samples
+};
+
+struct TerrainOptions {
+  int cells_per_segment = 100;        ///< rows of cells per segment, ≥ 1
+  int seam_cells = 1;                 ///< rows by which a segment reaches over each inner border, ≥ 0; hides cracks of about that size, costs polygons
+};
+
+/// One mesh per segment: positions, smooth normals (computed on the whole grid, so that seams do not show in the shading), uvs in 0 … 1 over the
+/// whole field (u along x, v along -z... v = 0 at row 0).
+std::vector<Mesh> terrain_segments(const HeightField& field, const TerrainOptions& options);
+
+}  // namespace talisman::layers

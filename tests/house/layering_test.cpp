@@ -1,0 +1,94 @@
+// The house rules that a compiler does not check: includes go one way, folders that touch no files stay that way, and files stay
+// short enough to be read.
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::map<std::string, std::vector<std::string>> kMayInclude = {
+    {"layers", {"layers"}},
+    {"warp", {"layers", "warp"}},
+    {"fiducials", {"layers", "warp", "fiducials"}},
+    {"regulator", {"layers", "warp", "fiducials", "regulator"}},
+    {"chunker", {"layers", "warp", "chunker"}},
+    {"sequences", {"layers", "warp", "fiducials", "regulator", "chunker", "sequences"}},
+};
+
+struct SourceFile {
+  std::string folder;
+  fs::path path;
+  std::vector<std::string> lines;
+};
+
+std::vector<SourceFile> sources_of(const std::vector<std::string>& folders) {
+  std::vector<SourceFile> files;
+  for (const auto& folder : folders) {
+    for (const auto& entry : fs::recursive_directory_iterator(fs::path(TALISMAN_SOURCE_DIR) / folder)) {
+      const auto extension = entry.path().extension();
+      if (extension != ".h" && extension != ".cpp") continue;
+      SourceFile file{folder, entry.path(), {}};
+      std::ifstream in(entry.path());
+      for (std::string line; std::getline(in, line);) file.lines.push_back(line);
+      files.push_back(std::move(file));
+    }
+  }
+  return files;
+}
+
+std::vector<std::string> all_folders() {
+  std::vector<std::string> names;
+  for (const auto& [name, allowed] : kMayInclude) names.push_back(name);
+  return names;
+}
+
+TEST(House, IncludesGoOneWay) {
+  const std::regex include(R"re(^\s*#\s*include\s*[<"]([a-z]+)/[^>"]+[>"])re");
+  int project_includes = 0;
+  for (const auto& file : sources_of(all_folders())) {
+    const auto& allowed = kMayInclude.at(file.folder);
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+      std::smatch match;
+      if (!std::regex_search(file.lines[i], match, include)) continue;
+      const std::string target = match[1];
+      if (kMayInclude.count(target) == 0) continue;
+      ++project_includes;
+      EXPECT_NE(std::find(allowed.begin(), allowed.end(), target), allowed.end())
+          << file.path << ":" << i + 1 << ": " << file.folder << " may not include " << target;
+    }
+  }
+  EXPECT_GT(project_includes, 20) << "the scan found almost nothing: is the pattern still right?";
+}
+
+TEST(House, OnlySequencesTouchesFiles) {
+  const std::regex file_io(R"re(^\s*#\s*include\s*<(fstream|filesystem|OpenImageIO/.*|opencv2/.*|assimp/.*|yaml-cpp/.*)>)re");
+  for (const auto& file : sources_of({"layers", "warp", "fiducials", "regulator", "chunker"}))
+    for (std::size_t i = 0; i < file.lines.size(); ++i)
+      EXPECT_FALSE(std::regex_search(file.lines[i], file_io)) << file.path << ":" << i + 1 << ": " << file.lines[i];
+}
+
+TEST(House, EigenAndCeresStayInsideWarpSources) {
+  const std::regex solver(R"re(^\s*#\s*include\s*<(ceres|Eigen)/)re");
+  for (const auto& file : sources_of(all_folders())) {
+    if (file.folder == "warp" && file.path.extension() == ".cpp") continue;
+    for (std::size_t i = 0; i < file.lines.size(); ++i)
+      EXPECT_FALSE(std::regex_search(file.lines[i], solver)) << file.path << ":" << i + 1;
+  }
+}
+
+TEST(House, FilesAreShortEnoughToRead) {
+  auto folders = all_folders();
+  folders.push_back("tests");
+  for (const auto& file : sources_of(folders)) EXPECT_LE(file.lines.size(), 600u) << file.path;
+}
+
+}  // namespace
