@@ -11,7 +11,8 @@
 namespace talisman::layers {
 namespace {
 
-/// Bit i of a corner's number: on the high side of axis i. An edge is named by its axis c and its corner with bit c 0.
+/// Bit i of a corner's number: on the high side of axis i. An edge is named by its axis c and its corner with
+/// bit c 0.
 constexpr int kCorners = 8;
 
 struct Cuts {
@@ -26,10 +27,12 @@ struct Box {
   dvec3 lo{HUGE_VAL}, hi{-HUGE_VAL};
   dvec3 size() const { return hi - lo; }
   dvec3 inside_depth(const dvec3& p, int s) const {
-    return {s & 1 ? hi.x - p.x : p.x - lo.x, s & 2 ? hi.y - p.y : p.y - lo.y, s & 4 ? hi.z - p.z : p.z - lo.z};
+    return {s & 1 ? hi.x - p.x : p.x - lo.x, s & 2 ? hi.y - p.y : p.y - lo.y,
+            s & 4 ? hi.z - p.z : p.z - lo.z};
   }
   dvec3 at_depth(const dvec3& u, int s) const {
-    return {s & 1 ? hi.x - u.x : lo.x + u.x, s & 2 ? hi.y - u.y : lo.y + u.y, s & 4 ? hi.z - u.z : lo.z + u.z};
+    return {s & 1 ? hi.x - u.x : lo.x + u.x, s & 2 ? hi.y - u.y : lo.y + u.y,
+            s & 4 ? hi.z - u.z : lo.z + u.z};
   }
 };
 
@@ -38,9 +41,12 @@ std::span<const std::array<int, 3>> vertices_per_corner(BoundKind kind) {
   static constexpr std::array<std::array<int, 3>, 6> kAxes{
       {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {1, 0, 2}, {2, 1, 0}}};
   switch (kind) {
-    case BoundKind::Box8: return std::span(kAxes).first(1);
-    case BoundKind::Dop14: return std::span(kAxes).first(3);
-    case BoundKind::Dop26: break;
+    case BoundKind::Box8:
+      return std::span(kAxes).first(1);
+    case BoundKind::Dop14:
+      return std::span(kAxes).first(3);
+    case BoundKind::Dop26:
+      break;
   }
   return kAxes;
 }
@@ -59,7 +65,8 @@ std::vector<dvec3> vertices(const Box& box, const Cuts& cuts, BoundKind kind) {
   return result;
 }
 
-// ---- topology: the faces of one well-shaped solid of each kind ------------------------------------------------
+// ---- topology: the faces of one well-shaped solid of each kind
+// ------------------------------------------------
 
 bool has_plane(BoundKind kind, int axes_in_normal) {
   return axes_in_normal == 1 || (axes_in_normal == 3 && kind != BoundKind::Box8) ||
@@ -103,7 +110,8 @@ std::vector<std::array<int, 3>> make_topology(BoundKind kind) {
   return triangles;
 }
 
-// ---- cuts: as deep as the points allow, then as shallow as the topology needs ----------------------------------
+// ---- cuts: as deep as the points allow, then as shallow as the topology needs
+// ----------------------------------
 
 Cuts deepest_cuts(std::span<const dvec3> points, const Box& box) {
   Cuts cuts;
@@ -137,8 +145,8 @@ Cuts separate_corners(const Cuts& deepest, const dvec3& size) {
   return cuts;
 }
 
-/// Dop26: first every two edges at a corner share its cut; that may leave corners too deep for the shallower edges,
-/// which one common factor on all cuts repairs (the first rule does not change under it).
+/// Dop26: first every two edges at a corner share its cut; that may leave corners too deep for the shallower
+/// edges, which one common factor on all cuts repairs (the first rule does not change under it).
 Cuts separate_corners_and_edges(const Cuts& deepest, const dvec3& size) {
   Cuts cuts = deepest;
   for (int s = 0; s < kCorners; ++s) {
@@ -166,16 +174,20 @@ Cuts separate_corners_and_edges(const Cuts& deepest, const dvec3& size) {
 
 Cuts cuts_for(std::span<const dvec3> points, const Box& box, BoundKind kind) {
   switch (kind) {
-    case BoundKind::Box8: break;
-    case BoundKind::Dop14: return separate_corners(deepest_cuts(points, box), box.size());
-    case BoundKind::Dop26: return separate_corners_and_edges(deepest_cuts(points, box), box.size());
+    case BoundKind::Box8:
+      break;
+    case BoundKind::Dop14:
+      return separate_corners(deepest_cuts(points, box), box.size());
+    case BoundKind::Dop26:
+      return separate_corners_and_edges(deepest_cuts(points, box), box.size());
   }
   return {};
 }
 
 bool is_finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
-// ---- layers ----------------------------------------------------------------------------------------------------
+// ---- layers
+// ----------------------------------------------------------------------------------------------------
 
 bool is_self_or_ancestor(const Scene& scene, int ancestor, int node) {
   while (node > ancestor) node = scene.nodes[node].parent;
@@ -207,12 +219,13 @@ bool follows_rigid_node(const Scene& scene, const Layer& layer) {
 /// The matrix of `node` in the space of `ancestor` (-1: the world), from the nodes' own transforms.
 dmat4 ancestor_from_node(const Scene& scene, int ancestor, int node) {
   dmat4 result(1.0);
-  for (; node != ancestor; node = scene.nodes[node].parent) result = scene.nodes[node].local.matrix() * result;
+  for (; node != ancestor; node = scene.nodes[node].parent)
+    result = scene.nodes[node].local.matrix() * result;
   return result;
 }
 
-/// The node whose axes a deforming layer follows best: the lowest one above all its parts, or above the joints of
-/// those that are skinned.
+/// The node whose axes a deforming layer follows best: the lowest one above all its parts, or above the
+/// joints of those that are skinned.
 int common_node(const Scene& scene, const Layer& layer) {
   int common = -2;  // none yet
   const auto join = [&](int node) { common = common == -2 ? node : lowest_common_node(scene, common, node); };
