@@ -280,10 +280,9 @@ Polyhedron bounding_polyhedron(std::span<const dvec3> points, BoundKind kind) {
     box.lo = min(box.lo, p);
     box.hi = max(box.hi, p);
   }
+  if (!is_finite(3.0 * box.size())) return {};  // the cuts would overflow
   Polyhedron result;
   result.points = vertices(box, cuts_for(points, box, kind), kind);
-  // Coordinates near the largest double overflow in the differences.
-  if (!std::all_of(result.points.begin(), result.points.end(), is_finite)) return {};
   const auto triangles = topology(kind);
   result.triangles.assign(triangles.begin(), triangles.end());
   return result;
