@@ -44,7 +44,10 @@ MaterialPoint crossing(const HalfSpace& h, const MaterialPoint& inner, const Mat
   const double t = d_inner / (d_inner - h.distance(outer.clip[h.state]));
   MaterialPoint result;
   for (int i = 0; i < 2; ++i) result.clip[i] = inner.clip[i] + t * (outer.clip[i] - inner.clip[i]);
+  const bool at_rest = result.clip[0] == result.clip[1];
   put_on_plane(h, result.clip[h.state]);
+  if (at_rest)
+    result.clip[1 - h.state] = result.clip[h.state];  // what has not moved has moved by exactly nothing
   return result;
 }
 
