@@ -48,7 +48,12 @@ dvec3 direction(Random& random) {
   }
 }
 
-layers::dmat4 turn(double angle_rad, dvec3 axis) { return glm::rotate(layers::dmat4(1.0), angle_rad, axis); }
+/// Turned about a random axis; angle and axis are drawn one after the other, because the order of arguments
+/// is not fixed.
+layers::dmat4 random_turn(Random& random, double least_rad, double most_rad) {
+  const double angle_rad = random.uniform(least_rad, most_rad);
+  return glm::rotate(layers::dmat4(1.0), angle_rad, direction(random));
+}
 
 std::vector<dvec2> random_points(Random& random, int count, double half_side_px, dvec2 centre) {
   std::vector<dvec2> points(count);
@@ -89,8 +94,8 @@ Pairs moving_box(std::uint64_t seed, int points) {
   const dvec3 half{distance * random.uniform(0.02, 0.15), distance * random.uniform(0.02, 0.15),
                    distance * random.uniform(0.02, 0.15)};
   const dvec3 centre = dvec3{random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), -1} * distance;
-  const auto pose = turn(random.uniform(0, kPi), direction(random));
-  const auto step = turn(random.uniform(0.2, 3) * kPi / 180, direction(random));
+  const auto pose = random_turn(random, 0, kPi);
+  const auto step = random_turn(random, 0.2 * kPi / 180, 3 * kPi / 180);
   const dvec3 move =
       dvec3{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)} * distance;
   Pairs pairs;
