@@ -28,8 +28,8 @@
 
 namespace talisman::warp {
 
-/// Coordinates beyond this count as infinite: their squares must not overflow.
-inline constexpr double kLargestCoordinatePx = 1e100;
+/// Coordinates beyond this count as infinite, so that squares do not overflow and true errors stay below kHugePx.
+inline constexpr double kLargestCoordinatePx = 1e25;
 /// Limits of the cross ratios (σ₂/σ₁, min/max of σx, σy): none below the first, full above the second. No
 /// unit.
 inline constexpr double kCollinearRatio = 1e-9, kSpanningRatio = 1e-7;
