@@ -15,8 +15,9 @@
 namespace talisman::warp {
 namespace {
 
-/// The unknowns of a family as the six entries of A (a b tx c d ty) and g h, in normalised coordinates. A translation
-/// cannot change the scale, which the two normalisations have made different: `rest` is their ratio.
+/// The unknowns of a family as the six entries of A (a b tx c d ty) and g h, in normalised coordinates. A
+/// translation cannot change the scale, which the two normalisations have made different: `rest` is their
+/// ratio.
 template <Family kFamily, typename T>
 std::array<T, 8> entries(const T* x, double rest) {
   const T zero(0.0);
@@ -31,6 +32,9 @@ constexpr int unknowns(Family family) {
   constexpr std::array<int, 5> kUnknowns{2, 3, 4, 6, 8};
   return kUnknowns[static_cast<int>(family)];
 }
+
+/// Errors below this share of the size of the points now cannot be made smaller.
+constexpr double kRounding = 1e-13;
 
 /// What one continuation step minimises: Σ (‖r‖ / scale)ᵖ.
 struct Power {
@@ -53,8 +57,11 @@ struct Residual {
     out[0] = rx / power.scale;
     out[1] = ry / power.scale;
     if (power.p == 2) return true;
-    // The square of this scalar is ‖r‖ᵖ; p ≥ 4 keeps it differentiable at r = 0.
-    out[0] = ceres::pow(out[0] * out[0] + out[1] * out[1], power.p / 4.0);
+    // The square of this scalar is ‖r‖ᵖ; p ≥ 4 keeps it differentiable at r = 0. A step that makes an error
+    // ten times the last largest one is refused before its power overflows.
+    const T squared = out[0] * out[0] + out[1] * out[1];
+    if (!(squared < 100.0)) return false;
+    out[0] = ceres::pow(squared, power.p / 4.0);
     out[1] = T(0.0);
     return true;
   }
@@ -91,9 +98,11 @@ template <Family kFamily>
 FitStatus minimise(const Problem& problem, Power power, double* x, int& iterations) {
   ceres::Problem sum;
   for (std::size_t i = 0; i < problem.then_px.size(); ++i) {
-    auto* residual = new Residual<kFamily>{problem.frame.normalised_then(problem.then_px[i]),
-                                           problem.frame.normalised_now(problem.now_px[i]), problem.rest, power};
-    sum.AddResidualBlock(new ceres::AutoDiffCostFunction<Residual<kFamily>, 2, unknowns(kFamily)>(residual), nullptr, x);
+    auto* residual =
+        new Residual<kFamily>{problem.frame.normalised_then(problem.then_px[i]),
+                              problem.frame.normalised_now(problem.now_px[i]), problem.rest, power};
+    sum.AddResidualBlock(new ceres::AutoDiffCostFunction<Residual<kFamily>, 2, unknowns(kFamily)>(residual),
+                         nullptr, x);
   }
   ceres::Solver::Summary summary;
   ceres::Solve(quiet_options(), &sum, &summary);
@@ -122,7 +131,7 @@ FitResult continue_powers(const Problem& problem, std::array<double, 8> x, int l
     result.status = minimise<kFamily>(problem, power, x.data(), iterations);
     result.warp = warp_from<kFamily>(problem, x.data());
     measure(problem.then_px, problem.now_px, result);
-    if (!(result.max_px > 0)) return result;
+    if (!(result.max_px > kRounding * problem.frame.now_scale)) return result;
     if (result.max_px < best.max_px || log2_p == 1) best = result;
     power.scale = result.max_px / problem.frame.now_scale;
   }
@@ -144,7 +153,8 @@ std::array<double, 8> normalised_entries(const Problem& problem, const Warp& war
 
 }  // namespace
 
-FitResult ceres_post_divide(std::span<const dvec2> then_px, std::span<const dvec2> now_px, const Warp& start) {
+FitResult ceres_post_divide(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
+                            const Warp& start) {
   const Problem problem = problem_of(then_px, now_px);
   std::array<double, 8> x = normalised_entries(problem, start);
   FitResult result;
@@ -153,16 +163,22 @@ FitResult ceres_post_divide(std::span<const dvec2> then_px, std::span<const dvec
   return result;
 }
 
-FitResult ceres_max_norm(std::span<const dvec2> then_px, std::span<const dvec2> now_px, Family family, int log2_p) {
+FitResult ceres_max_norm(std::span<const dvec2> then_px, std::span<const dvec2> now_px, Family family,
+                         int log2_p) {
   TALISMAN_CHECK_GE(log2_p, 1);
   const Problem problem = problem_of(then_px, now_px);
   const double k = problem.rest;
   switch (family) {
-    case Family::Translation: return continue_powers<Family::Translation>(problem, {0, 0}, log2_p);
-    case Family::Isotropic: return continue_powers<Family::Isotropic>(problem, {k, 0, 0}, log2_p);
-    case Family::XyScale: return continue_powers<Family::XyScale>(problem, {k, 0, k, 0}, log2_p);
-    case Family::Affine: return continue_powers<Family::Affine>(problem, {k, 0, 0, 0, k, 0}, log2_p);
-    case Family::Perspective: return continue_powers<Family::Perspective>(problem, {k, 0, 0, 0, k, 0, 0, 0}, log2_p);
+    case Family::Translation:
+      return continue_powers<Family::Translation>(problem, {0, 0}, log2_p);
+    case Family::Isotropic:
+      return continue_powers<Family::Isotropic>(problem, {k, 0, 0}, log2_p);
+    case Family::XyScale:
+      return continue_powers<Family::XyScale>(problem, {k, 0, k, 0}, log2_p);
+    case Family::Affine:
+      return continue_powers<Family::Affine>(problem, {k, 0, 0, 0, k, 0}, log2_p);
+    case Family::Perspective:
+      return continue_powers<Family::Perspective>(problem, {k, 0, 0, 0, k, 0, 0, 0}, log2_p);
   }
   TALISMAN_CHECK(false && "no such family");
 }

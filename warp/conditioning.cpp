@@ -11,7 +11,8 @@ namespace {
 
 bool is_good(double coordinate) { return std::fabs(coordinate) <= kLargestCoordinatePx; }  // false for NaN
 
-/// Unit eigenvector of the larger eigenvalue of | xx xy ; xy yy |, by the half-angle formula that does not cancel.
+/// Unit eigenvector of the larger eigenvalue of | xx xy ; xy yy |, by the half-angle formula that does not
+/// cancel.
 dvec2 principal_axis(double xx, double xy, double yy) {
   const double difference = xx - yy, twice = 2 * xy, length = std::hypot(difference, twice);
   if (!(length > 0)) return {1, 0};
@@ -39,7 +40,8 @@ double resolved(double sigma, const Spread& spread) {
 }
 
 double both_resolved(double smaller, double larger, const Spread& spread) {
-  return std::fmin(resolved(smaller, spread), step_between(share(smaller, larger), kCollinearRatio, kSpanningRatio));
+  return std::fmin(resolved(smaller, spread),
+                   step_between(share(smaller, larger), kCollinearRatio, kSpanningRatio));
 }
 
 /// Neither mirrored nor flat. Written so that NaN and overflow fail.
@@ -53,15 +55,25 @@ bool keeps_area(double a, double b, double c, double d) {
 dvec2 centroid_of(std::span<const dvec2> points) {
   if (points.empty()) return {0, 0};
   dvec2 sum{0, 0};
-  for (const dvec2& p : points) sum += p - points[0];  // differences: exact where the points are close together
+  for (const dvec2& p : points)
+    sum += p - points[0];  // differences: exact where the points are close together
   return points[0] + sum / static_cast<double>(points.size());
+}
+
+/// How far the rounding of the matrix can move the image of p: numerator and denominator are sums of large
+/// terms of both signs.
+bool is_precise(const Warp& warp, dvec2 p, double w, dvec2 image) {
+  const dmat3& m = warp.now_from_then;
+  const double terms = std::fabs(m[0].z * p.x) + std::fabs(m[1].z * p.y) + std::fabs(m[2].z);
+  const double coordinate = std::fmax(std::fabs(image.x), std::fabs(image.y)), epsilon = 0x1p-52;
+  return epsilon * terms / w * coordinate <= std::fmax(kLargestRoundingPx, kSpreadRatio * coordinate);
 }
 
 bool acceptable_perspective(const Warp& warp, std::span<const dvec2> then_px) {
   double least = HUGE_VAL, most = 0;
   for (const dvec2& p : then_px) {
     const double w = warp.denominator(p);
-    if (!(w > 0) || !std::isfinite(w)) return false;
+    if (!(w > 0) || !std::isfinite(w) || !is_precise(warp, p, w, warp(p))) return false;
     least = std::fmin(least, w);
     most = std::fmax(most, w);
   }
@@ -77,11 +89,16 @@ bool acceptable_perspective(const Warp& warp, std::span<const dvec2> then_px) {
 
 int points_needed(Family family) {
   switch (family) {
-    case Family::Translation: return 1;
-    case Family::Isotropic: return 2;
-    case Family::XyScale: return 2;
-    case Family::Affine: return 3;
-    case Family::Perspective: return 4;
+    case Family::Translation:
+      return 1;
+    case Family::Isotropic:
+      return 2;
+    case Family::XyScale:
+      return 2;
+    case Family::Affine:
+      return 3;
+    case Family::Perspective:
+      return 4;
   }
   TALISMAN_CHECK(false && "no such family");
 }
@@ -125,12 +142,16 @@ Spread spread_of(std::span<const dvec2> points) {
 
 double strength(Family family, const Spread& spread) {
   switch (family) {
-    case Family::Translation: return 1;
-    case Family::Isotropic: return resolved(spread.sigma_1, spread);
+    case Family::Translation:
+      return 1;
+    case Family::Isotropic:
+      return resolved(spread.sigma_1, spread);
     case Family::XyScale:
-      return both_resolved(std::fmin(spread.sigma_x, spread.sigma_y), std::fmax(spread.sigma_x, spread.sigma_y), spread);
+      return both_resolved(std::fmin(spread.sigma_x, spread.sigma_y),
+                           std::fmax(spread.sigma_x, spread.sigma_y), spread);
     case Family::Affine:
-    case Family::Perspective: return both_resolved(spread.sigma_2, spread.sigma_1, spread);
+    case Family::Perspective:
+      return both_resolved(spread.sigma_2, spread.sigma_1, spread);
   }
   TALISMAN_CHECK(false && "no such family");
 }

@@ -26,13 +26,15 @@ Affine2 solve(const Pairs& pairs, Family family) {
   return fit_least_squares(pairs.then_px, pairs.now_px, family, spread_of(pairs.then_px)).affine();
 }
 
-/// The normal equations A = P P̂ᵀ(P̂P̂ᵀ)⁻¹ as they stand in the paper, in long double, about the first point: slow and obvious.
+/// The normal equations A = P P̂ᵀ(P̂P̂ᵀ)⁻¹ as they stand in the paper, in long double, about the first point:
+/// slow and obvious.
 Affine2 normal_equations(const Pairs& pairs) {
   using real = long double;
   const dvec2 o = pairs.then_px[0];
   real s[3][3] = {}, bx[3] = {}, by[3] = {};
   for (std::size_t i = 0; i < pairs.size(); ++i) {
-    const real q[3] = {static_cast<real>(pairs.then_px[i].x) - o.x, static_cast<real>(pairs.then_px[i].y) - o.y, 1};
+    const real q[3] = {static_cast<real>(pairs.then_px[i].x) - o.x,
+                       static_cast<real>(pairs.then_px[i].y) - o.y, 1};
     for (int r = 0; r < 3; ++r) {
       for (int c = 0; c < 3; ++c) s[r][c] += q[r] * q[c];
       bx[r] += q[r] * pairs.now_px[i].x;
@@ -40,7 +42,8 @@ Affine2 normal_equations(const Pairs& pairs) {
     }
   }
   const auto det = [](const real m[3][3]) {
-    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
+    return m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
+           m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
            m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
   };
   const auto cramer = [&](const real b[3], int column) {
@@ -50,8 +53,9 @@ Affine2 normal_equations(const Pairs& pairs) {
     return det(m) / det(s);
   };
   const real a = cramer(bx, 0), b = cramer(bx, 1), c = cramer(by, 0), d = cramer(by, 1);
-  return {static_cast<double>(a), static_cast<double>(b), static_cast<double>(cramer(bx, 2) - a * o.x - b * o.y),
-          static_cast<double>(c), static_cast<double>(d), static_cast<double>(cramer(by, 2) - c * o.x - d * o.y)};
+  return {
+      static_cast<double>(a), static_cast<double>(b), static_cast<double>(cramer(bx, 2) - a * o.x - b * o.y),
+      static_cast<double>(c), static_cast<double>(d), static_cast<double>(cramer(by, 2) - c * o.x - d * o.y)};
 }
 
 TEST(FitLeastSquares, AffineEqualsTheNormalEquationsOfThePaper) {
@@ -62,8 +66,8 @@ TEST(FitLeastSquares, AffineEqualsTheNormalEquationsOfThePaper) {
   }
 }
 
-// At the minimum the residuals are orthogonal to every direction in which the family can move: a necessary and sufficient
-// condition, because the problem is convex.
+// At the minimum the residuals are orthogonal to every direction in which the family can move: a necessary
+// and sufficient condition, because the problem is convex.
 TEST(FitLeastSquares, ResidualsAreOrthogonalToTheFamily) {
   for (std::uint64_t seed = 0; seed < 500; ++seed) {
     const Pairs pairs = moving_box(seed, 14);
@@ -87,21 +91,25 @@ TEST(FitLeastSquares, ResidualsAreOrthogonalToTheFamily) {
 }
 
 TEST(FitLeastSquares, RecoversExactMapsOfEachFamily) {
-  const std::array<Affine2, 4> maps{{{1, 0, 5, 0, 1, -7}, {1.5, 0, 3, 0, 1.5, 9}, {0.5, 0, 1, 0, 2, 4}, {1, 0.3, 2, -0.4, 1.2, 8}}};
+  const std::array<Affine2, 4> maps{
+      {{1, 0, 5, 0, 1, -7}, {1.5, 0, 3, 0, 1.5, 9}, {0.5, 0, 1, 0, 2, 4}, {1, 0.3, 2, -0.4, 1.2, 8}}};
   for (int k = 0; k < 4; ++k) {
     const Pairs pairs = exact_affine(7, 9, maps[k]);
     EXPECT_LT(tests::largest_error(pairs, solve(pairs, kLinear[k])), 1e-10) << name(kLinear[k]);
   }
 }
 
-// The raw normal equations lose 0.3 px in double on a sprite of 2 px at (700, 700), and everything far away [A §5].
+// The raw normal equations lose 0.3 px in double on a sprite of 2 px at (700, 700), and everything far away
+// [A §5].
 TEST(FitLeastSquares, SpritesOfAllSizesStayAccurateFarFromTheOrigin) {
   for (double size : {1e-3, 1.0, 2.0, 1e3, 1e5})
     for (double offset : {0.0, 700.0, 1e5, 1e8}) {
       const Pairs pairs = exact_affine(5, 12, {1.02, 0.03, 40, -0.01, 0.97, 80}, size / 2, {offset, -offset});
       const double rounding = 1e-12 * size + 1e-15 * offset;  // of the coordinates now themselves
-      EXPECT_LT(tests::largest_error(pairs, solve(pairs, Family::Affine)), 100 * rounding) << size << " px at " << offset;
-      EXPECT_LT(tests::largest_error(pairs, solve(pairs, Family::Affine)), 1e-3) << size << " px at " << offset;
+      EXPECT_LT(tests::largest_error(pairs, solve(pairs, Family::Affine)), 100 * rounding)
+          << size << " px at " << offset;
+      EXPECT_LT(tests::largest_error(pairs, solve(pairs, Family::Affine)), 1e-3)
+          << size << " px at " << offset;
     }
 }
 
@@ -122,7 +130,8 @@ TEST(AffineLeastSquares, EqualsTheUncachedFit) {
     EXPECT_EQ(cached.status, plain.status);
     EXPECT_NEAR(cached.rms_px, plain.rms_px, 1e-9) << "seed " << seed;
     EXPECT_NEAR(cached.max_px, plain.max_px, 1e-9) << "seed " << seed;
-    for (const dvec2& p : pairs.then_px) EXPECT_LT(glm::length(cached.warp(p) - plain.warp(p)), 1e-9) << "seed " << seed;
+    for (const dvec2& p : pairs.then_px)
+      EXPECT_LT(glm::length(cached.warp(p) - plain.warp(p)), 1e-9) << "seed " << seed;
   }
 }
 
@@ -163,12 +172,15 @@ TEST(AffineLeastSquaresDeathTest, AnotherNumberOfPointsIsAProgrammersMistake) {
 TEST(SpreadOf, MatchesLongDoubleBruteForce) {
   Random random(8);
   for (int trial = 0; trial < 200; ++trial) {
-    const Pairs pairs = near_collinear(random.bits(), 14, std::pow(10, -random.uniform(0, 6)), random.uniform(0, 3.1));
+    const Pairs pairs =
+        near_collinear(random.bits(), 14, std::pow(10, -random.uniform(0, 6)), random.uniform(0, 3.1));
     long double mx = 0, my = 0, xx = 0, xy = 0, yy = 0;
     for (const dvec2& p : pairs.then_px) mx += p.x / 14.0L, my += p.y / 14.0L;
-    for (const dvec2& p : pairs.then_px) xx += (p.x - mx) * (p.x - mx), xy += (p.x - mx) * (p.y - my), yy += (p.y - my) * (p.y - my);
+    for (const dvec2& p : pairs.then_px)
+      xx += (p.x - mx) * (p.x - mx), xy += (p.x - mx) * (p.y - my), yy += (p.y - my) * (p.y - my);
     const long double half = (xx + yy) / 2, spread = std::sqrt((xx - yy) * (xx - yy) / 4 + xy * xy);
-    const double s1 = static_cast<double>(std::sqrt((half + spread) / 14)), s2 = static_cast<double>(std::sqrt((half - spread) / 14));
+    const double s1 = static_cast<double>(std::sqrt((half + spread) / 14)),
+                 s2 = static_cast<double>(std::sqrt((half - spread) / 14));
     const Spread ours = spread_of(pairs.then_px);
     EXPECT_NEAR(ours.sigma_1, s1, 1e-11 * s1);
     EXPECT_NEAR(ours.sigma_2, s2, 1e-5 * s2 + 1e-12 * s1) << "trial " << trial;

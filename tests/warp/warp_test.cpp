@@ -18,8 +18,9 @@ using tests::gentle_affine;
 using tests::gentle_perspective;
 using tests::Random;
 
-constexpr std::array kAllCurves{Curve::trn, Curve::trni, Curve::iso,  Curve::isoi, Curve::so,    Curve::soi,  Curve::aff,
-                                Curve::affi, Curve::per, Curve::peri, Curve::per2, Curve::per2i, Curve::pers, Curve::pers2};
+constexpr std::array kAllCurves{Curve::trn,  Curve::trni,  Curve::iso,  Curve::isoi, Curve::so,
+                                Curve::soi,  Curve::aff,   Curve::affi, Curve::per,  Curve::peri,
+                                Curve::per2, Curve::per2i, Curve::pers, Curve::pers2};
 
 TEST(Curve, EveryNameIsReadBackAndNoTwoAreAlike) {
   std::set<std::string_view> names;
@@ -31,7 +32,8 @@ TEST(Curve, EveryNameIsReadBackAndNoTwoAreAlike) {
 }
 
 TEST(Curve, UnknownNamesAreRefused) {
-  for (std::string_view text : {"", "affine", "AFF", "per3", "aff "}) EXPECT_FALSE(curve_from_name(text)) << text;
+  for (std::string_view text : {"", "affine", "AFF", "per3", "aff "})
+    EXPECT_FALSE(curve_from_name(text)) << text;
 }
 
 TEST(Curve, FamiliesAreThoseOfThePaper) {
@@ -44,7 +46,8 @@ TEST(Curve, FamiliesAreThoseOfThePaper) {
 }
 
 TEST(Family, UnknownsGrowAlongTheChain) {
-  const std::array families{Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine, Family::Perspective};
+  const std::array families{Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine,
+                            Family::Perspective};
   const std::array unknowns{2, 3, 4, 6, 8};
   for (std::size_t i = 0; i < families.size(); ++i) EXPECT_EQ(degrees_of_freedom(families[i]), unknowns[i]);
 }
@@ -73,7 +76,8 @@ TEST(Warp, PerspectiveDividesByTheDenominator) {
 TEST(WarpCompose, EqualsOneAfterTheOther) {
   Random random(1);
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
-    const Warp a{Family::Perspective, gentle_perspective(seed)}, b = from_affine(Family::Affine, gentle_affine(seed + 1000));
+    const Warp a{Family::Perspective, gentle_perspective(seed)},
+        b = from_affine(Family::Affine, gentle_affine(seed + 1000));
     const dvec2 p = dvec2{512, 512} + random.in_square(200);
     EXPECT_LT(glm::length(compose(a, b)(p) - a(b(p))), 1e-9) << "seed " << seed;
     EXPECT_LT(glm::length(compose(b, a)(p) - b(a(p))), 1e-9) << "seed " << seed;
@@ -82,7 +86,8 @@ TEST(WarpCompose, EqualsOneAfterTheOther) {
 }
 
 TEST(WarpCompose, TakesTheMoreGeneralFamily) {
-  const Warp scale = from_affine(Family::XyScale, {2, 0, 1, 0, 3, 1}), shift = from_affine(Family::Translation, {1, 0, 5, 0, 1, 6});
+  const Warp scale = from_affine(Family::XyScale, {2, 0, 1, 0, 3, 1}),
+             shift = from_affine(Family::Translation, {1, 0, 5, 0, 1, 6});
   EXPECT_EQ(compose(scale, shift).family, Family::XyScale);
   EXPECT_EQ(compose(shift, scale).family, Family::XyScale);
   EXPECT_EQ(compose(Warp{Family::Perspective}, shift).family, Family::Perspective);
@@ -91,7 +96,8 @@ TEST(WarpCompose, TakesTheMoreGeneralFamily) {
 TEST(WarpInverse, UndoesTheWarp) {
   Random random(2);
   for (std::uint64_t seed = 0; seed < 200; ++seed)
-    for (const Warp& warp : {Warp{Family::Perspective, gentle_perspective(seed)}, from_affine(Family::Affine, gentle_affine(seed))}) {
+    for (const Warp& warp : {Warp{Family::Perspective, gentle_perspective(seed)},
+                             from_affine(Family::Affine, gentle_affine(seed))}) {
       const auto back = inverse(warp);
       ASSERT_TRUE(back) << "seed " << seed;
       EXPECT_EQ(back->family, warp.family);
