@@ -239,7 +239,7 @@ TEST(LayerBound, RigidPartsAreBoundedOnceInTheirNode) {
   const ArmScene arm;
   const auto layer = arm.layer({0, 1}, 0);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Box8);
-  EXPECT_TRUE(bound.fixed);
+  EXPECT_TRUE(bound.fixed());
   EXPECT_EQ(bound.node, 0);
   const auto box = layers::bounds_of(bound.hull.points);
   EXPECT_EQ(box.lo, dvec3(-0.5, -0.5, -0.5));
@@ -255,7 +255,7 @@ TEST(LayerBound, PartsThatMoveAgainstEachOtherAreBoundedAtEachTimeAndTurnAsAWhol
   const ArmScene arm;
   const auto layer = arm.layer({1, 2}, -1);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Dop26);
-  EXPECT_FALSE(bound.fixed);
+  EXPECT_FALSE(bound.fixed());
   EXPECT_EQ(bound.axes_node, 1);
   EXPECT_EQ(bound.hull.triangles.size(), 92u);
   for (const double hand_angle : {0.0, 0.4, 2.0}) {
@@ -281,7 +281,7 @@ TEST(LayerBound, WhatNeverMovesIsFixedInTheWorld) {
   arm.scene.tracks.clear();
   const auto layer = arm.layer({0, 2}, -1);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Box8);
-  EXPECT_TRUE(bound.fixed);
+  EXPECT_TRUE(bound.fixed());
   EXPECT_EQ(bound.node, -1);
   EXPECT_EQ(layers::bounds_of(world_points(arm.frame(0, 0), layer, bound)).hi, dvec3(3.5, 2.5, 0.5));
 }
@@ -294,7 +294,7 @@ TEST(LayerBound, SkinnedPartsFollowTheirVertices) {
   arm.scene.parts[0].skin = 0;
   const auto layer = arm.layer({0}, -1);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Box8);
-  EXPECT_FALSE(bound.fixed);
+  EXPECT_FALSE(bound.fixed());
   EXPECT_EQ(bound.axes_node, 1);
   const auto frame = arm.frame(0.9, 0.2);
   const auto part = world_positions(frame, arm.scene.parts[0]);
