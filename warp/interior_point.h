@@ -62,6 +62,7 @@ class InteriorPoint {
     find_direction(bent);
     double way = (1 - std::clamp(left, kLeastMargin, kMostMargin)) * way_to_boundary();
     if (way < kShortWay) way = recentred_way(mean);
+    last_way = way;
     return move(std::min(1.0, way));
   }
 
@@ -199,6 +200,7 @@ class InteriorPoint {
     return false;
   }
 
+  public: double last_way=0; private:
   Model& model_;
   ResidualColumns& columns_;
   const int n_;

@@ -25,44 +25,82 @@ namespace {
 //
 //   t ≥ τ - ‖L⁻¹e₁‖ (max |d_x| + upper) - ‖L⁻¹e₂‖ (max |d_y| + upper) - ‖L⁻¹e₃‖.
 //
-// The remainder is subtracted twice over, the second time for the rounding of L and e.
+// The remainder is subtracted twice over, the second time for the rounding of L and e. The multipliers of an
+// interior-point iterate leave a first-order remainder. To first order a change du changes (e₁, e₂, -e₃/E) by
+// Σ den Jᵀdu, so that du = -(λ/den) J z with (Σ λ JᵀJ) z = e removes it and leaves its square.
 class PostDivideCertificate {
  public:
-  PostDivideCertificate(const PostDivideModel& model, double upper) : model_(model), upper_(upper) {}
+  explicit PostDivideCertificate(const PostDivideModel& model) : model_(model), c_(model.columns) {
+    for (int i = 0; i < c_.n; ++i) {
+      const double share = c_.w[i] * model_.factor(i);
+      c_.ux[i] = share * c_.rx[i];
+      c_.uy[i] = share * c_.ry[i];
+    }
+  }
 
-  double lower_bound() {
-    const Stock stock = take_stock(model_.columns);
-    if (!(stock.sum_norms > 0)) return 0;
-    const double tau = stock.sum_squares / stock.sum_norms;
-    Mat<3> v{};
-    Vec<3> e1{}, e2{}, e3{};
-    for (int i = 0; i < model_.columns.n; ++i) add_point(i, tau, v, e1, e2, e3);
-    Cholesky<3> root;
-    if (!root.factor(v, kTinyPivot)) return 0;
-    const double reach = model_.columns.now_extent() + upper_;
-    const double rest = reach * (length(root, e1) + length(root, e2)) + length(root, e3);
-    return std::max(0.0, tau * (1 - 1e-14) - 2 * rest - model_.columns.column_rounding_px());
+  /// The best bound within `refinements` corrections of the multipliers; stops early at `wanted`.
+  double lower_bound(double upper, double wanted, int refinements) {
+    double best = std::max(0.0, bound(upper));
+    for (int k = 0; k < refinements && best < wanted; ++k) {
+      if (!(k == 0 ? factor_curvature() : true)) break;
+      correct_multipliers();
+      best = std::max(best, bound(upper));
+    }
+    return best;
   }
 
  private:
-  void add_point(int i, double tau, Mat<3>& v, Vec<3>& e1, Vec<3>& e2, Vec<3>& e3) const {
-    const ResidualColumns& c = model_.columns;
-    const Vec<3> q{1, c.qx[i], c.qy[i]};
-    const double share = c.w[i] * model_.factor(i);
-    const dvec2 u{share * c.rx[i], share * c.ry[i]};
-    const double norm = share * std::sqrt(c.f[i]);
-    add_outer<3>(v, norm * norm, q);
-    add_scaled<3>(e1, u.x, q);
-    add_scaled<3>(e2, u.y, q);
-    add_scaled<3>(e3, u.x * c.dx[i] + u.y * c.dy[i] - tau * norm, q);
+  double bound(double upper) {
+    double reach = 0, scale = 0;
+    for (int i = 0; i < c_.n; ++i) {
+      const double den = 1 / model_.factor(i);
+      reach += den * (c_.ux[i] * c_.rx[i] + c_.uy[i] * c_.ry[i]);
+      scale += den * norm(i);
+    }
+    if (!(scale > 0)) return 0;
+    tau_ = reach / scale;
+    Mat<3> v{};
+    e1_ = e2_ = e3_ = {};
+    for (int i = 0; i < c_.n; ++i) {
+      const Vec<3> q{1, c_.qx[i], c_.qy[i]};
+      const double size = norm(i);
+      add_outer<3>(v, size * size, q);
+      add_scaled<3>(e1_, c_.ux[i], q);
+      add_scaled<3>(e2_, c_.uy[i], q);
+      add_scaled<3>(e3_, c_.ux[i] * c_.dx[i] + c_.uy[i] * c_.dy[i] - tau_ * size, q);
+    }
+    Cholesky<3> root;
+    if (!root.factor(v, kTinyPivot)) return 0;
+    const double extent = c_.now_extent() + upper;
+    const double rest = extent * (length(root, e1_) + length(root, e2_)) + length(root, e3_);
+    return tau_ * (1 - 1e-14) - 2 * rest - c_.column_rounding_px();
   }
+  bool factor_curvature() {
+    Mat<8> h{};
+    for (int i = 0; i < c_.n; ++i) model_.add_curvature(i, c_.w[i], h);
+    return curvature_.factor(h, kTinyPivot);
+  }
+  void correct_multipliers() {
+    const double s = -model_.per_extent;
+    Vec<8> z{e1_[0], e1_[1], e1_[2], e2_[0], e2_[1], e2_[2], s * e3_[1], s * e3_[2]};
+    curvature_.solve(z);
+    for (int i = 0; i < c_.n; ++i) {
+      const dvec2 change = c_.w[i] * model_.factor(i) * model_.along(i, z);
+      c_.ux[i] -= change.x;
+      c_.uy[i] -= change.y;
+    }
+  }
+  double norm(int i) const { return std::sqrt(c_.ux[i] * c_.ux[i] + c_.uy[i] * c_.uy[i]); }
   static double length(const Cholesky<3>& root, Vec<3> e) {
     root.forward(e);
     return std::sqrt(dot<3>(e, e));
   }
 
   const PostDivideModel& model_;
-  const double upper_;
+  const ResidualColumns& c_;
+  Cholesky<8> curvature_;
+  Vec<3> e1_{}, e2_{}, e3_{};
+  double tau_ = 0;
 };
 
 }  // namespace

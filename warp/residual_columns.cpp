@@ -64,7 +64,7 @@ void ResidualColumns::place_columns() {
     heap_.resize(static_cast<std::size_t>(kColumns) * n);
     base = heap_.data();
   }
-  double** const columns[] = {&qx, &qy, &dx, &dy, &rx, &ry, &f, &w};
+  double** const columns[] = {&qx, &qy, &dx, &dy, &rx, &ry, &f, &w, &ux, &uy};
   for (double** column : columns) {
     *column = base;
     base += n;

@@ -7,6 +7,7 @@
 ///   q = T (p̂ - ĉ)      mean 0; for affine and perspective Σ q qᵀ = n I, otherwise scaled only (see Whitening)
 ///   d = p - c           mean 0, px
 ///   rᵢ = dᵢ - W̃(qᵢ)     the residual of the current iterate, px;  fᵢ = ‖rᵢ‖²
+///   uᵢ                  scratch for the multipliers of a certificate
 ///   wᵢ                  the weight (dual variable) of the point, Σ wᵢ = 1
 ///
 /// Whitening costs one pass and buys two things: the least-squares systems are well conditioned whatever the
@@ -50,10 +51,10 @@ class ResidualColumns {
   double pixel_rounding_px() const { return pixel_rounding_px_; }
 
   const int n;
-  double *qx, *qy, *dx, *dy, *rx, *ry, *f, *w;
+  double *qx, *qy, *dx, *dy, *rx, *ry, *f, *w, *ux, *uy;
 
  private:
-  static constexpr int kColumns = 8, kInline = 64;
+  static constexpr int kColumns = 10, kInline = 64;
   void place_columns();
   void whiten(Whitening whitening);
   void orthogonalise();
