@@ -28,8 +28,9 @@
 
 namespace talisman::warp {
 
-/// Coordinates beyond this count as infinite: their squares must not overflow.
-inline constexpr double kLargestCoordinatePx = 1e100;
+/// Coordinates beyond this count as infinite, so that squares do not overflow and true errors stay below
+/// kHugePx.
+inline constexpr double kLargestCoordinatePx = 1e25;
 /// Limits of the cross ratios (σ₂/σ₁, min/max of σx, σy): none below the first, full above the second. No
 /// unit.
 inline constexpr double kCollinearRatio = 1e-9, kSpanningRatio = 1e-7;
@@ -40,6 +41,10 @@ inline constexpr double kFlattest = 1e-12;
 /// Smallest ratio of two perspective denominators over the points: closer to the horizon a pixel is stretched
 /// a million-fold.
 inline constexpr double kSmallestDenominatorRatio = 1e-6;
+/// A homography whose own rounding moves a point by more than this, px, cannot be written as a 3×3 matrix of
+/// doubles: it foreshortens a small sprite strongly very far from the origin. (At coordinates beyond 1e9 px:
+/// by more than kSpreadRatio of the coordinate.)
+inline constexpr double kLargestRoundingPx = 1e-4;
 
 /// 1, 2, 2, 3, 4: the fewest points that can determine the family.
 int points_needed(Family family);
