@@ -10,10 +10,15 @@
 /// A step is Newton's on this system with λᵢ cᵢ = μ in place of 0, after Mehrotra: a predictor with μ = 0 tells
 /// how small μ may be chosen, and its second-order terms correct the step. Because f is a quadratic (exactly so in the
 /// linear families) the corrector knows them: along s·dx, fᵢ bends by bendᵢ = ‖Jᵢ dx‖² and Σ λᵢ gᵢ by
-/// -Σ dλᵢ JᵢᵀJᵢ dx. That is why 5 to 6 steps suffice where a log-barrier method took 23 [A §5].
+/// -Σ dλᵢ JᵢᵀJᵢ dx. That is why some 5 steps suffice where a log-barrier method took 23 (performance of the
+/// prototypes: [A §5]).
 ///
-/// The normal matrix is H + Σ κᵢ (gᵢ - m)(gᵢ - m)ᵀ with H = Σ λᵢ JᵢᵀJᵢ/2 … scaled below, κᵢ = λᵢ/cᵢ and m the
-/// κ-mean of g: s is eliminated by centring, which subtracts nothing that is nearly equal.
+/// The normal matrix is H + 2 Σ κᵢ (gᵢ - m)(gᵢ - m)ᵀ with H = Σ λᵢ JᵢᵀJᵢ, κᵢ = λᵢ/cᵢ and m the κ-mean of g: s is
+/// eliminated by centring, which subtracts nothing that is nearly equal.
+///
+/// For the post-divide residual, which is not linear, H is the Gauss-Newton part of the Hessian. The rest,
+/// -Σ λᵢ/denᵢ (gᵢ ∇denᵢᵀ + ∇denᵢ gᵢᵀ), vanishes on the directions in which no active fᵢ changes, so that
+/// convergence stays superlinear and H stays positive definite.
 ///
 /// The model supplies x, update() (false: x is outside the domain), gradient(i), transposed(i, v) = Jᵢᵀ v,
 /// along(i, dx) = Jᵢ dx, bend(i, along, dx), add_curvature(i, λ, H), complete_curvature(H).
@@ -62,7 +67,6 @@ class InteriorPoint {
     find_direction(bent);
     double way = (1 - std::clamp(left, kLeastMargin, kMostMargin)) * way_to_boundary();
     if (way < kShortWay) way = recentred_way(mean);
-    last_way = way;
     return move(std::min(1.0, way));
   }
 
@@ -96,8 +100,7 @@ class InteriorPoint {
     return sum / n_;
   }
 
-  /// Gradients, their κ-mean and the factored normal matrix at the iterate. In terms of x/√2 and s/2 all
-  /// factors of two of f cancel: ∇fᵢ = -2 gᵢ and ∇²fᵢ = 2 JᵢᵀJᵢ.
+  /// Gradients, their κ-mean and the factored normal matrix at the iterate; ∇fᵢ = -2 gᵢ, ∇²fᵢ = 2 JᵢᵀJᵢ.
   bool linearise() {
     Mat<kUnknowns> h{};
     mean_ = {};
@@ -200,8 +203,7 @@ class InteriorPoint {
     return false;
   }
 
-  public: double last_way=0; private:
-  Model& model_;
+   Model& model_;
   ResidualColumns& columns_;
   const int n_;
   double level_ = 0, d_level_ = 0, sum_kappa_ = 0, sum_dual_ = 0;

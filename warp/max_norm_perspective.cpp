@@ -2,10 +2,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <glm/geometric.hpp>
-
 #include "warp/linear_families.h"
-#include "warp/max_norm_solvers.h"
+#include "warp/max_norm.h"
+#include "warp/max_norm_parts.h"
 #include "warp/min_max.h"
 #include "warp/projective_families.h"
 
@@ -73,7 +72,7 @@ class PostDivideCertificate {
     if (!root.factor(v, kTinyPivot)) return 0;
     const double extent = c_.now_extent() + upper;
     const double rest = extent * (length(root, e1_) + length(root, e2_)) + length(root, e3_);
-    return tau_ * (1 - 1e-14) - 2 * rest - c_.column_rounding_px();
+    return tau_ * (1 - 1e-14) - 2 * rest - c_.column_rounding();
   }
   bool factor_curvature() {
     Mat<8> h{};
@@ -103,6 +102,86 @@ class PostDivideCertificate {
   double tau_ = 0;
 };
 
+/// The post-divide problem from the affine answer of a few Lawson steps.
+class PostDivideRun {
+ public:
+  PostDivideRun(ResidualColumns& columns, const FitOptions& options)
+      : model_(columns), goal_(options, columns), limit_(std::min(options.max_iterations, kMostSteps)) {}
+
+  bool run() {
+    if (!start_affine()) return false;
+    if (!reached() && progress_.iterations < limit_)
+      refine(model_, progress_, goal_, limit_, [this] { certify(); });
+    model_.x = progress_.best;
+    return reached();
+  }
+  const PostDivideModel& model() const { return model_; }
+  const Progress<PostDivideModel>& progress() const { return progress_; }
+
+ private:
+  static constexpr int kMostSteps = 60;
+  // More corrections gain nothing: the remainder is then rounding.
+  static constexpr int kCorrections = 2;
+
+  bool reached() const { return progress_.found && goal_.reached(progress_.bounds); }
+  /// Every affine map is a perspective one, so that its error is an upper bound; its lower bound is not ours.
+  bool start_affine() {
+    AffineModel affine(model_.columns);
+    MinMax<AffineModel> lawson(affine, goal_);
+    lawson.run_lawson(limit_);
+    progress_.iterations = lawson.progress().iterations;
+    if (!lawson.progress().found) return false;
+    std::copy(affine.x.begin(), affine.x.end(), model_.x.begin());
+    progress_.keep_if_better(model_, lawson.progress().bounds.upper);
+    return true;
+  }
+  void certify() {
+    const double upper = progress_.bounds.upper;
+    const double wanted = goal_.decide >= 0 && goal_.decide < upper ? goal_.decide : upper;
+    progress_.raise(PostDivideCertificate(model_).lower_bound(
+        upper, wanted - std::max(goal_.relative_gap * upper, goal_.floor), kCorrections));
+  }
+
+  PostDivideModel model_;
+  Goal goal_;
+  Progress<PostDivideModel> progress_;
+  int limit_;
+};
+
 }  // namespace
+
+FitResult fit_post_divide_max_norm(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
+                                   const FitOptions& options) {
+  ResidualColumns columns(then_px, now_px, Whitening::Full);
+  if (!columns.spans()) return fit_nothing(then_px, now_px, Family::Perspective);
+  PostDivideRun run(columns, options);
+  const bool reached = run.run();
+  if (!run.progress().found) return fit_nothing(then_px, now_px, Family::Perspective);
+  FitResult result = measured(then_px, now_px, {Family::Perspective, run.model().in_pixels()}, reached);
+  result.max_lower_bound_px = std::fmin(run.progress().bounds.lower * columns.unit_px(), result.max_px);
+  result.iterations = run.progress().iterations;
+  return result;
+}
+
+FitResult fit_max_norm_homogeneous(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
+                                   const FitOptions& options) {
+  return fit_max_norm_homogeneous(then_px, now_px, options, nullptr);
+}
+
+FitResult fit_max_norm_homogeneous(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
+                                   const FitOptions& options, HomogeneousBounds* bounds) {
+  if (auto refused = refuse(then_px, now_px, Family::Perspective)) return *refused;
+  ResidualColumns columns(then_px, now_px, Whitening::Full);
+  if (!columns.spans()) return fit_nothing(then_px, now_px, Family::Perspective);
+  HomogeneousModel model(columns);
+  MinMax<HomogeneousModel> run(model, Goal({options.relative_gap, options.max_iterations}, columns));
+  const bool reached = run.run(options.max_iterations);
+  if (!run.progress().found) return fit_nothing(then_px, now_px, Family::Perspective);
+  FitResult result = measured(then_px, now_px, {Family::Perspective, model.in_pixels()}, reached);
+  result.iterations = run.progress().iterations;
+  const Bounds& found = run.progress().bounds;
+  if (bounds) *bounds = {found.lower * columns.unit_px(), found.upper * columns.unit_px()};
+  return result;
+}
 
 }  // namespace talisman::warp

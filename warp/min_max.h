@@ -34,31 +34,32 @@
 
 namespace talisman::warp {
 
-/// What is known of the optimum, px.
+/// What is known of the optimum, in units of the columns.
 struct Bounds {
   double lower = 0;
   double upper = std::numeric_limits<double>::max();
 };
 
-/// When is a solver done? See FitOptions; below `floor_px` rounding decides.
+/// When is a solver done? See FitOptions; below `floor` rounding decides. In units of the columns.
 struct Goal {
-  double relative_gap, decide_px, floor_px;
+  double relative_gap, decide, floor;
+
+  Goal(const FitOptions& options, const ResidualColumns& columns)
+      : relative_gap(options.relative_gap),
+        decide(options.decide_px / columns.unit_px()),
+        floor(columns.pixel_rounding()) {}
   bool certified(const Bounds& b) const {
-    return b.upper - b.lower <= std::max(relative_gap * b.upper, floor_px);
+    return b.upper - b.lower <= std::max(relative_gap * b.upper, floor);
   }
   bool decided(const Bounds& b) const {
-    return decide_px >= 0 && (b.lower > decide_px || b.upper + floor_px <= decide_px);
+    return decide >= 0 && (b.lower > decide || b.upper + floor <= decide);
   }
   bool reached(const Bounds& b) const { return certified(b) || decided(b); }
 };
 
-inline Goal goal_of(const FitOptions& options, const ResidualColumns& columns) {
-  return {options.relative_gap, options.decide_px, columns.pixel_rounding_px()};
-}
-
 /// Sums over the points at the present weights and residuals.
 struct Stock {
-  double largest = 0;    ///< max f
+  double largest = 0;      ///< max f
   double sum_squares = 0;  ///< Σ w f
   double sum_norms = 0;    ///< Σ w √f
 };
@@ -72,12 +73,50 @@ inline Stock take_stock(const ResidualColumns& c) {
   return s;
 }
 
+/// What a run has found so far.
+template <class Model>
+struct Progress {
+  Bounds bounds;
+  typename Model::Unknowns best{};
+  bool found = false;  ///< `best` holds an iterate
+  int iterations = 0;
+
+  void keep_if_better(const Model& model, double upper) {
+    if (!(upper < bounds.upper)) return;
+    bounds.upper = upper;
+    best = model.x;
+    found = true;
+  }
+  void raise(double lower) { bounds.lower = std::max(bounds.lower, lower); }
+};
+
+/// Interior-point steps from the best iterate until the goal or the limit. `certify` improves the bounds of
+/// the progress from the weights in the columns, and leaves the iterate as it was.
+template <class Model, class Certify>
+void refine(Model& model, Progress<Model>& progress, const Goal& goal, int limit, const Certify& certify) {
+  model.x = progress.best;
+  model.update();
+  InteriorPoint<Model> interior(model);
+  interior.start();
+  while (progress.iterations < limit && interior.step()) {
+    ++progress.iterations;
+    progress.keep_if_better(model, interior.largest_residual());
+    // In value mode the certificate is asked for only when it can succeed: it costs up to half a step.
+    const bool hopeless = goal.decide < 0 && progress.bounds.upper > goal.floor &&
+                          interior.relative_complementarity() > 2 * goal.relative_gap;
+    if (hopeless) continue;
+    interior.weights_to_columns();
+    certify();
+    if (goal.reached(progress.bounds)) return;
+  }
+}
+
 /// One run for one linear model. Leaves the best iterate in `model.x`.
 template <class Model>
 class MinMax {
  public:
-  // Measured on boxes of 8 … 64 points: two steps decide most thresholds, and more cost the value mode what
-  // they save.
+  // Measured on boxes of 8 … 64 points: two Lawson steps decide most thresholds, and more cost the value mode
+  // what they save. No run of the workload needed a third of kMostSteps.
   static constexpr int kLawsonSteps = 2, kMostSteps = 60;
 
   MinMax(Model& model, const Goal& goal) : model_(model), columns_(model.columns), goal_(goal) {}
@@ -85,21 +124,27 @@ class MinMax {
   /// True if the goal was reached within `max_iterations` (Lawson and interior-point steps together).
   bool run(int max_iterations) {
     const int limit = std::min(max_iterations, kMostSteps);
-    while (iterations_ < std::min(limit, 1 + kLawsonSteps)) {
-      if (iterations_ > 0) reweight();
-      ++iterations_;
-      if (!certify()) break;
-      if (goal_.reached(bounds_)) break;
+    if (!run_lawson(limit) && progress_.found && progress_.iterations < limit) {
+      refine(model_, progress_, goal_, limit, [this] { certify_beside_iterate(); });
+      model_.x = progress_.best;
     }
-    if (!goal_.reached(bounds_) && iterations_ < limit && found_) refine(limit);
-    model_.x = best_;
-    return found_ && goal_.reached(bounds_);
+    return progress_.found && goal_.reached(progress_.bounds);
   }
-  const Bounds& bounds() const { return bounds_; }
-  int iterations() const { return iterations_; }
+  /// The first steps only: cheap, and a start for something better. True if the goal was reached.
+  bool run_lawson(int max_iterations) {
+    const int limit = std::min(max_iterations, 1 + kLawsonSteps);
+    while (progress_.iterations < limit) {
+      if (progress_.iterations > 0) reweight();
+      ++progress_.iterations;
+      if (!certify() || goal_.reached(progress_.bounds)) break;
+    }
+    model_.x = progress_.best;
+    return progress_.found && goal_.reached(progress_.bounds);
+  }
+  const Progress<Model>& progress() const { return progress_; }
 
  private:
-  /// Bounds of the present weights; false if they leave the least-squares problem singular.
+  /// Bounds of the present weights; false if they leave the least-squares problem singular. Moves the iterate.
   bool certify() {
     if (!model_.solve()) return false;
     model_.update();
@@ -112,16 +157,16 @@ class MinMax {
     const double slack = 4 * upper * std::sqrt(dot<Model::kUnknowns>(drift, drift));
     if (stock.sum_norms > 0) {
       const double exact = (stock.sum_squares - slack) / stock.sum_norms * (1 - 1e-14);
-      bounds_.lower = std::max(bounds_.lower, exact - columns_.column_rounding_px());
+      progress_.raise(exact - columns_.column_rounding());
     }
-    keep_if_better(upper);
+    progress_.keep_if_better(model_, upper);
     return true;
   }
-  void keep_if_better(double upper) {
-    if (!(upper < bounds_.upper)) return;
-    bounds_.upper = upper;
-    best_ = model_.x;
-    found_ = true;
+  void certify_beside_iterate() {
+    const auto iterate = model_.x;
+    certify();
+    model_.x = iterate;
+    model_.update();
   }
   void reweight() {
     const ResidualColumns& c = columns_;
@@ -129,35 +174,11 @@ class MinMax {
     for (int i = 0; i < c.n; ++i) sum += c.w[i] *= std::sqrt(c.f[i]);
     for (int i = 0; i < c.n; ++i) c.w[i] /= sum;
   }
-  void refine(int limit) {
-    model_.x = best_;
-    model_.update();
-    InteriorPoint<Model> interior(model_);
-    interior.start();
-    while (iterations_ < limit && interior.step()) {
-      ++iterations_;
-      keep_if_better(interior.largest_residual());
-      // A certificate costs a fifth of a step: in value mode it is asked for only when it can succeed.
-      if (goal_.decide_px < 0 && interior.relative_complementarity() > 2 * goal_.relative_gap &&
-          bounds_.upper > goal_.floor_px)
-        continue;
-      const auto iterate = model_.x;
-
-      interior.weights_to_columns();
-      certify();
-      if (goal_.reached(bounds_)) return;
-      model_.x = iterate;
-      model_.update();
-    }
-  }
 
   Model& model_;
   ResidualColumns& columns_;
   Goal goal_;
-  Bounds bounds_;
-  typename Model::Unknowns best_{};
-  bool found_ = false;
-  int iterations_ = 0;
+  Progress<Model> progress_;
 };
 
 }  // namespace talisman::warp

@@ -62,10 +62,10 @@ struct ProjectiveModel {
   /// Target-from-source in pixels, scaled to a last entry of 1 where that is possible.
   dmat3 in_pixels() const {
     const dvec2 c = columns.now_centre();
-    const double g = x[6] * per_extent, h = x[7] * per_extent;
+    const double g = x[6] * per_extent, h = x[7] * per_extent, px = columns.unit_px();
     // Rows of the map from q; the centre of the points now is added before the divide.
-    const dvec3 u{x[1] + c.x * g, x[2] + c.x * h, x[0] + c.x};
-    const dvec3 v{x[4] + c.y * g, x[5] + c.y * h, x[3] + c.y};
+    const dvec3 u{px * x[1] + c.x * g, px * x[2] + c.x * h, px * x[0] + c.x};
+    const dvec3 v{px * x[4] + c.y * g, px * x[5] + c.y * h, px * x[3] + c.y};
     const dvec3 w{g, h, 1};
     const Affine2 t = columns.whitening();
     const auto row = [&t](const dvec3& r) {

@@ -12,6 +12,8 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 // Below this share of the length a width is made of rounding errors; well below kCollinearRatio, so that the
 // dispatcher's rule decides first.
 constexpr double kNoWidth = 1e-12;
+// Between this and its inverse the fourth powers of lengths are far from the limits of a double.
+constexpr double kSmallExtent = 1e-30;
 
 dvec2 mean(std::span<const dvec2> points) {
   dvec2 sum{0, 0};
@@ -49,13 +51,14 @@ ResidualColumns::ResidualColumns(std::span<const dvec2> then_px, std::span<const
     w[i] = 1.0 / n;
   }
   now_extent_ = largest(dx, dy, n);
+  choose_unit();
   const double then_extent = largest(qx, qy, n);
   const double then_place = std::abs(then_centre_.x) + std::abs(then_centre_.y);
-  const double now_place = std::abs(now_centre_.x) + std::abs(now_centre_.y);
+  const double now_place = (std::abs(now_centre_.x) + std::abs(now_centre_.y)) / unit_px_;
   if (then_extent > 4 * kEpsilon * then_place) whiten(whitening);
   const double stretch = std::max(std::abs(t00_) + std::abs(t01_), std::abs(t10_) + std::abs(t11_));
-  column_rounding_px_ = 32 * kEpsilon * now_extent_ * (1 + stretch * then_extent);
-  pixel_rounding_px_ = column_rounding_px_ + 32 * kEpsilon * (now_place + now_extent_ * stretch * then_place);
+  column_rounding_ = 32 * kEpsilon * now_extent_ * (1 + stretch * then_extent);
+  pixel_rounding_ = column_rounding_ + 32 * kEpsilon * (now_place + now_extent_ * stretch * then_place);
 }
 
 void ResidualColumns::place_columns() {
@@ -69,6 +72,18 @@ void ResidualColumns::place_columns() {
     *column = base;
     base += n;
   }
+}
+
+void ResidualColumns::choose_unit() {
+  if (!(now_extent_ > 0) || (now_extent_ > kSmallExtent && now_extent_ < 1 / kSmallExtent)) return;
+  int exponent = 0;
+  std::frexp(now_extent_, &exponent);
+  unit_px_ = std::ldexp(1.0, std::clamp(exponent, -1000, 1000));
+  for (int i = 0; i < n; ++i) {
+    dx[i] /= unit_px_;
+    dy[i] /= unit_px_;
+  }
+  now_extent_ /= unit_px_;
 }
 
 void ResidualColumns::whiten(Whitening whitening) {
@@ -118,11 +133,11 @@ Affine2 ResidualColumns::whitening() const {
 }
 
 Affine2 ResidualColumns::in_pixels(const Affine2& map) const {
-  Affine2 out{map.a * t00_ + map.b * t10_, map.a * t01_ + map.b * t11_, 0,
-              map.c * t00_ + map.d * t10_, map.c * t01_ + map.d * t11_, 0};
+  Affine2 out{unit_px_ * (map.a * t00_ + map.b * t10_), unit_px_ * (map.a * t01_ + map.b * t11_), 0,
+              unit_px_ * (map.c * t00_ + map.d * t10_), unit_px_ * (map.c * t01_ + map.d * t11_), 0};
   const dvec2 moved = out.linear(then_centre_);
-  out.tx = (now_centre_.x - moved.x) + map.tx;
-  out.ty = (now_centre_.y - moved.y) + map.ty;
+  out.tx = (now_centre_.x - moved.x) + unit_px_ * map.tx;
+  out.ty = (now_centre_.y - moved.y) + unit_px_ * map.ty;
   return out;
 }
 

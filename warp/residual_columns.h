@@ -5,8 +5,9 @@
 /// per quantity.
 ///
 ///   q = T (p̂ - ĉ)      mean 0; for affine and perspective Σ q qᵀ = n I, otherwise scaled only (see Whitening)
-///   d = p - c           mean 0, px
-///   rᵢ = dᵢ - W̃(qᵢ)     the residual of the current iterate, px;  fᵢ = ‖rᵢ‖²
+///   d = (p - c) / unit  mean 0; the unit is 1 px, or a power of two px where squares of squares of d could
+///                       overflow or vanish
+///   rᵢ = dᵢ - W̃(qᵢ)     the residual of the current iterate, units;  fᵢ = ‖rᵢ‖²
 ///   uᵢ                  scratch for the multipliers of a certificate
 ///   wᵢ                  the weight (dual variable) of the point, Σ wᵢ = 1
 ///
@@ -43,12 +44,13 @@ class ResidualColumns {
   Affine2 whitening() const;
   dvec2 then_centre() const { return then_centre_; }
   dvec2 now_centre() const { return now_centre_; }
-  /// Largest |coordinate| of d, px.
+  double unit_px() const { return unit_px_; }
+  /// Largest |coordinate| of d, units.
   double now_extent() const { return now_extent_; }
-  /// Rounding that the columns d, q and r carry, px: what a lower bound computed from them must give away.
-  double column_rounding_px() const { return column_rounding_px_; }
-  /// Rounding of a residual evaluated from the warp's coefficients in pixels, px; larger far from the origin.
-  double pixel_rounding_px() const { return pixel_rounding_px_; }
+  /// Rounding that the columns d, q and r carry, units: what a lower bound computed from them must give away.
+  double column_rounding() const { return column_rounding_; }
+  /// Rounding of a residual evaluated from the warp's coefficients in pixels, units; larger far from the origin.
+  double pixel_rounding() const { return pixel_rounding_; }
 
   const int n;
   double *qx, *qy, *dx, *dy, *rx, *ry, *f, *w, *ux, *uy;
@@ -56,12 +58,13 @@ class ResidualColumns {
  private:
   static constexpr int kColumns = 10, kInline = 64;
   void place_columns();
+  void choose_unit();
   void whiten(Whitening whitening);
   void orthogonalise();
 
   dvec2 then_centre_{0, 0}, now_centre_{0, 0};
   double t00_ = 1, t01_ = 0, t10_ = 0, t11_ = 1;
-  double now_extent_ = 0, column_rounding_px_ = 0, pixel_rounding_px_ = 0;
+  double unit_px_ = 1, now_extent_ = 0, column_rounding_ = 0, pixel_rounding_ = 0;
   bool spans_ = false;
   double inline_[kColumns * kInline];  // left uninitialised on purpose: the constructor writes what is used
   std::vector<double> heap_;           // only for more than kInline points
