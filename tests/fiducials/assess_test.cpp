@@ -44,8 +44,10 @@ Correspondences matched(const Pairs& pairs) {
   return {pairs.then_px, pairs.now_px, std::vector<int>(pairs.size(), 0)};
 }
 
-/// The visibility of a sprite cut at some sides that is carried by `warp`; the layer fills the display and more.
-Visibility visibility(const SpritePlacement& placement, const Warp& warp, const RectD& bounds = {{-500, -500}, {1500, 1500}}) {
+/// The visibility of a sprite cut at some sides that is carried by `warp`; the layer fills the display and
+/// more.
+Visibility visibility(const SpritePlacement& placement, const Warp& warp,
+                      const RectD& bounds = {{-500, -500}, {1500, 1500}}) {
   warp::FitResult fitted;
   fitted.warp = warp;
   const Pairs pairs = tests::moving_box(1, 8);
@@ -59,7 +61,8 @@ TEST(Geometric, IsTheLargestErrorAndItsPlace) {
     const Pairs pairs = tests::moving_box(seed, 14);
     const auto fitted = warp::fit(pairs.then_px, pairs.now_px, Curve::aff);
     const RectD bounds{{0, 0}, {1024, 1024}};
-    const Geometric g = assess(state_with(bounds), state_with(bounds), placed_over(bounds), matched(pairs), fitted).geometric;
+    const Geometric g =
+        assess(state_with(bounds), state_with(bounds), placed_over(bounds), matched(pairs), fitted).geometric;
     EXPECT_NEAR(g.px, tests::largest_error(pairs, fitted.warp), 1e-9) << "seed " << seed;
     EXPECT_EQ(g.where_px, pairs.now_px[g.point]);
     EXPECT_NEAR(glm::length(fitted.warp(pairs.then_px[g.point]) - g.where_px), g.px, 1e-9);
@@ -70,7 +73,8 @@ TEST(Geometric, IsTheLargestErrorAndItsPlace) {
 TEST(Geometric, IsMeasuredAnewForTheWarpThatIsShown) {
   const Pairs pairs{{{10, 10}, {20, 10}, {10, 20}}, {{13, 14}, {20, 10}, {10, 20}}};
   const RectD bounds{{0, 0}, {100, 100}};
-  const Geometric g = assess(state_with(bounds), state_with(bounds), placed_over(bounds), matched(pairs), {}).geometric;
+  const Geometric g =
+      assess(state_with(bounds), state_with(bounds), placed_over(bounds), matched(pairs), {}).geometric;
   EXPECT_DOUBLE_EQ(g.px, 5);
   EXPECT_EQ(g.point, 0);
 }
@@ -80,9 +84,12 @@ TEST(Geometric, UnusableFitsAndUnmatchedLayersInViewAreUnknown) {
   pairs.now_px[4].x = std::nan("");
   const RectD bounds{{0, 0}, {100, 60}}, away{{2000, 0}, {2100, 60}};
   const auto bad = warp::fit(pairs.then_px, pairs.now_px, Curve::aff);
-  EXPECT_EQ(assess(state_with(bounds), state_with(bounds), placed_over(bounds), matched(pairs), bad).geometric.px, kHugePx);
+  EXPECT_EQ(
+      assess(state_with(bounds), state_with(bounds), placed_over(bounds), matched(pairs), bad).geometric.px,
+      kHugePx);
   const auto none = warp::fit({}, {}, Curve::aff);
-  const Geometric unmatched = assess(state_with(bounds), state_with(bounds), placed_over(bounds), {}, none).geometric;
+  const Geometric unmatched =
+      assess(state_with(bounds), state_with(bounds), placed_over(bounds), {}, none).geometric;
   EXPECT_EQ(unmatched.px, kHugePx);
   EXPECT_EQ(unmatched.where_px, dvec2(50, 30));
   EXPECT_EQ(unmatched.point, -1);
@@ -93,11 +100,13 @@ TEST(Assess, AtRestEveryFiducialIsExactlyAtItsBest) {
   Random random(3);
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     const Pairs box = tests::moving_box(seed, 8 + static_cast<int>(seed % 7)), rest{box.then_px, box.then_px};
-    const RectD bounds{{random.uniform(-300, 300), random.uniform(-300, 300)}, {random.uniform(400, 1500), random.uniform(400, 1500)}};
+    const RectD bounds{{random.uniform(-300, 300), random.uniform(-300, 300)},
+                       {random.uniform(400, 1500), random.uniform(400, 1500)}};
     SpritePlacement placement = placed_over(bounds, {true, true, true, true});
     if (seed % 2 == 1) {  // a turned sprite, beside which the bounding box has corners without content
       const double angle = random.uniform(-1, 1);
-      placement.screen_from_sprite = {std::cos(angle), -std::sin(angle), 300, std::sin(angle), std::cos(angle), 200};
+      placement.screen_from_sprite = {std::cos(angle), -std::sin(angle), 300,
+                                      std::sin(angle), std::cos(angle),  200};
     }
     for (Curve curve : {Curve::trn, Curve::so, Curve::aff, Curve::per, Curve::per2}) {
       const auto fitted = warp::fit(rest.then_px, rest.now_px, curve);
@@ -117,7 +126,8 @@ TEST(Assess, SamplingIsTakenOverTheSpriteWhereItWas) {
   warp::FitResult fitted;
   fitted.warp = Warp{Family::Perspective, {1, 0, 1e-3, 0, 1, 0, 0, 0, 1}};
   const Pairs pairs = tests::moving_box(1, 8);
-  const Sampling s = assess(state_with(rect), state_with(rect), placed_over(rect), matched(pairs), fitted).sampling;
+  const Sampling s =
+      assess(state_with(rect), state_with(rect), placed_over(rect), matched(pairs), fitted).sampling;
   EXPECT_EQ(s.magnification, sampling_over(fitted.warp, rect).magnification);
   EXPECT_EQ(s.anisotropy, sampling_over(fitted.warp, rect).anisotropy);
 }
@@ -131,7 +141,8 @@ TEST(Visibility, IsNotComputedWithoutACutSide) {
 
 TEST(Visibility, IsNotComputedForNothing) {
   EXPECT_EQ(visibility(SpritePlacement{}, shift(5, 5)).why_not, "nothing was drawn");
-  const auto out_of_view = visibility(placed_over({{0, 0}, {9, 9}}, {.left = true}), shift(5, 5), {{2000, 0}, {3000, 10}});
+  const auto out_of_view =
+      visibility(placed_over({{0, 0}, {9, 9}}, {.left = true}), shift(5, 5), {{2000, 0}, {3000, 10}});
   EXPECT_EQ(out_of_view.why_not, "the layer is out of view");
   EXPECT_FALSE(out_of_view.computed);
 }
@@ -173,8 +184,10 @@ TEST(Visibility, OnlyWhereTheLayerHasContentNow) {
 // A turn uncovers a wedge: as deep as the end of the side has come in.
 TEST(Visibility, ATurnUncoversAWedge) {
   const double angle = 0.01;
-  const Affine2 turn{std::cos(angle), std::sin(angle), 0, -std::sin(angle), std::cos(angle), 0};  // about the corner (0, 0)
-  const Visibility v = visibility(placed_over({{0, 0}, {1024, 1024}}, {.left = true}), from_affine(Family::Affine, turn));
+  const Affine2 turn{std::cos(angle),  std::sin(angle), 0,
+                     -std::sin(angle), std::cos(angle), 0};  // about the corner (0, 0)
+  const Visibility v =
+      visibility(placed_over({{0, 0}, {1024, 1024}}, {.left = true}), from_affine(Family::Affine, turn));
   EXPECT_NEAR(v.uncovered_px, 1024 * std::sin(angle), 0.2);
   EXPECT_NEAR(v.where_px.x, 0, 1e-9);
   EXPECT_NEAR(v.where_px.y, 1024, 1);
@@ -184,7 +197,8 @@ TEST(Visibility, ATurnUncoversAWedge) {
 TEST(Visibility, AShortSideLooksOnlyStraightAcross) {
   const double angle = 0.1;
   const Affine2 turn{std::cos(angle), std::sin(angle), 0, -std::sin(angle), std::cos(angle), 0};
-  const Visibility v = visibility(placed_over({{0, 0}, {300, 50}}, {.left = true}), from_affine(Family::Affine, turn));
+  const Visibility v =
+      visibility(placed_over({{0, 0}, {300, 50}}, {.left = true}), from_affine(Family::Affine, turn));
   EXPECT_LT(v.uncovered_px, 50 * std::tan(angle) + 1);
 }
 
@@ -199,13 +213,15 @@ TEST(Assess, HardCasesNeverGiveANonFiniteFigure) {
   for (const auto& hard : tests::hard_cases())
     for (Curve curve : {Curve::trn, Curve::iso, Curve::so, Curve::aff, Curve::per, Curve::per2}) {
       const auto fitted = warp::fit(hard.pairs.then_px, hard.pairs.now_px, curve);
-      const Report r = assess(state_with(bounds), state_with(bounds), placed_over(bounds, {true, true, true, true}),
-                              matched(hard.pairs), fitted);
+      const Report r = assess(state_with(bounds), state_with(bounds),
+                              placed_over(bounds, {true, true, true, true}), matched(hard.pairs), fitted);
       EXPECT_TRUE(std::isfinite(r.geometric.px)) << hard.name;
-      EXPECT_TRUE(std::isfinite(r.sampling.magnification) && std::isfinite(r.sampling.anisotropy)) << hard.name;
+      EXPECT_TRUE(std::isfinite(r.sampling.magnification) && std::isfinite(r.sampling.anisotropy))
+          << hard.name;
       EXPECT_TRUE(std::isfinite(r.sampling.minification)) << hard.name;
       EXPECT_TRUE(std::isfinite(r.visibility.uncovered_px)) << hard.name;
-      EXPECT_TRUE(std::isfinite(r.visibility.where_px.x) && std::isfinite(r.visibility.where_px.y)) << hard.name;
+      EXPECT_TRUE(std::isfinite(r.visibility.where_px.x) && std::isfinite(r.visibility.where_px.y))
+          << hard.name;
     }
 }
 

@@ -24,7 +24,8 @@ struct Jacobian {
   double a, b, c, d;
 };
 
-/// One-sided Jacobi rotation of the two columns in long double until they are orthogonal: the lengths are the singular values.
+/// One-sided Jacobi rotation of the two columns in long double until they are orthogonal: the lengths are the
+/// singular values.
 dvec2 slow_singular_values(const Jacobian& j) {
   using real = long double;
   real a = j.a, b = j.b, c = j.c, d = j.d;
@@ -47,14 +48,16 @@ Jacobian jacobian(const Warp& warp, dvec2 p) {
   const dmat3& m = warp.now_from_then;
   const double w = warp.denominator(p);
   const dvec2 x = warp(p);
-  return {(m[0].x - x.x * m[0].z) / w, (m[1].x - x.x * m[1].z) / w, (m[0].y - x.y * m[0].z) / w, (m[1].y - x.y * m[1].z) / w};
+  return {(m[0].x - x.x * m[0].z) / w, (m[1].x - x.x * m[1].z) / w, (m[0].y - x.y * m[0].z) / w,
+          (m[1].y - x.y * m[1].z) / w};
 }
 
 TEST(SingularValues, MatchJacobiRotationsInLongDouble) {
   Random random(1);
   for (int trial = 0; trial < 20000; ++trial) {
     const double scale = random.log_uniform(1e-6, 1e6);
-    const Jacobian j{scale * random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1), scale * random.uniform(-1, 1)};
+    const Jacobian j{scale * random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1),
+                     scale * random.uniform(-1, 1)};
     const dvec2 ours = singular_values(j.a, j.b, j.c, j.d), slow = slow_singular_values(j);
     EXPECT_NEAR(ours.x, slow.x, 1e-14 * slow.x) << "trial " << trial;
     EXPECT_NEAR(ours.y, slow.y, 1e-12 * slow.y) << "trial " << trial;
@@ -64,8 +67,8 @@ TEST(SingularValues, MatchJacobiRotationsInLongDouble) {
 TEST(SingularValues, OfTheSimplestMaps) {
   EXPECT_EQ(singular_values(1, 0, 0, 1), dvec2(1, 1));
   EXPECT_EQ(singular_values(2, 0, 0, 3), dvec2(3, 2));
-  EXPECT_EQ(singular_values(0, -2, 2, 0), dvec2(2, 2));   // a turn with scale
-  EXPECT_EQ(singular_values(-1, 0, 0, 1), dvec2(1, 1));   // a mirror
+  EXPECT_EQ(singular_values(0, -2, 2, 0), dvec2(2, 2));  // a turn with scale
+  EXPECT_EQ(singular_values(-1, 0, 0, 1), dvec2(1, 1));  // a mirror
   EXPECT_EQ(singular_values(0, 0, 0, 0), dvec2(0, 0));
   EXPECT_EQ(singular_values(0, 5, 0, 0), dvec2(5, 0));
 }
@@ -73,10 +76,11 @@ TEST(SingularValues, OfTheSimplestMaps) {
 TEST(SingularValues, TurnsDoNotChangeThem) {
   Random random(2);
   for (int trial = 0; trial < 1000; ++trial) {
-    const double s1 = random.uniform(1, 2), s2 = random.uniform(0, 1), u = random.uniform(-4, 4), v = random.uniform(-4, 4);
+    const double s1 = random.uniform(1, 2), s2 = random.uniform(0, 1), u = random.uniform(-4, 4),
+                 v = random.uniform(-4, 4);
     const double cu = std::cos(u), su = std::sin(u), cv = std::cos(v), sv = std::sin(v);
-    const dvec2 sigma = singular_values(s1 * cu * cv - s2 * su * sv, -s1 * cu * sv - s2 * su * cv, s1 * su * cv + s2 * cu * sv,
-                                        -s1 * su * sv + s2 * cu * cv);
+    const dvec2 sigma = singular_values(s1 * cu * cv - s2 * su * sv, -s1 * cu * sv - s2 * su * cv,
+                                        s1 * su * cv + s2 * cu * sv, -s1 * su * sv + s2 * cu * cv);
     EXPECT_NEAR(sigma.x, s1, 1e-14);
     EXPECT_NEAR(sigma.y, s2, 1e-14);
   }
@@ -106,7 +110,8 @@ TEST(SingularValues, NotFiniteEntriesGiveTheWorst) {
 
 TEST(SamplingOver, AtRestIsExactlyOneForEveryFamily) {
   const RectD rect{{100, 50}, {740, 333}};
-  for (Family family : {Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine, Family::Perspective}) {
+  for (Family family :
+       {Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine, Family::Perspective}) {
     const Sampling s = sampling_over(Warp{family}, rect);
     EXPECT_EQ(s.magnification, 1);
     EXPECT_EQ(s.minification, 1);
@@ -115,19 +120,22 @@ TEST(SamplingOver, AtRestIsExactlyOneForEveryFamily) {
 }
 
 TEST(SamplingOver, AffineMapsAreTheSameEverywhere) {
-  const Sampling s = sampling_over(warp::from_affine(Family::Affine, {2, 0, 5, 0, 0.5, 7}), {{0, 0}, {10, 20}});
+  const Sampling s =
+      sampling_over(warp::from_affine(Family::Affine, {2, 0, 5, 0, 0.5, 7}), {{0, 0}, {10, 20}});
   EXPECT_EQ(s.magnification, 2);
   EXPECT_EQ(s.minification, 0.5);
   EXPECT_EQ(s.anisotropy, 4);
   EXPECT_EQ(s.where_px, dvec2(15, 12));  // the image of the centre
 }
 
-// The bounds must enclose what any sample of the rectangle shows, and must not be far above the worst of them.
+// The bounds must enclose what any sample of the rectangle shows, and must not be far above the worst of
+// them.
 TEST(SamplingOver, PerspectiveBoundsEncloseADenseGrid) {
   for (std::uint64_t seed = 0; seed < 300; ++seed) {
     Random random(seed);
     const Warp warp{Family::Perspective, tests::gentle_perspective(seed)};
-    const dvec2 lo = dvec2{512, 512} + random.in_square(400), size{random.log_uniform(1, 500), random.log_uniform(1, 500)};
+    const dvec2 lo = dvec2{512, 512} + random.in_square(400),
+                size{random.log_uniform(1, 500), random.log_uniform(1, 500)};
     const RectD rect{lo, lo + size};
     const Sampling s = sampling_over(warp, rect);
     double most = 0, least = kHugePx, ratio = 0, least_w = kHugePx, most_w = 0;
