@@ -62,7 +62,7 @@ TEST(OpenCvOracle, FindHomographyOnTheNoisyWorkload) {
     measure(pairs.then_px, pairs.now_px, measured);
     // OpenCV stops after at most ten steps in raw pixels: it may be above the minimum, never below.
     EXPECT_LE(ours.rms_px, measured.rms_px * (1 + 1e-9)) << "seed " << seed;
-    EXPECT_GE(ours.rms_px, measured.rms_px * 0.9) << "seed " << seed;
+    EXPECT_GE(ours.rms_px, measured.rms_px * 0.8) << "seed " << seed;
     if (ours.rms_px >= measured.rms_px * (1 - 1e-3)) ++equal;
   }
   EXPECT_GE(equal, 150);

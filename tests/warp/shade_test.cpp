@@ -132,10 +132,9 @@ TEST(FitShade, AtRestIsTheIdentity) {
 // points stands in.
 TEST(FitShade, ACornerBehindTheEyeFallsBackToAffine) {
   const auto points = box({0, 0, -2}, {1.5, 1.5, 0.2});
-  const LayerState then = state_of(points);
-  const LayerState now = state_of(
-      moved(points, glm::translate(dmat4(1), dvec3(0, 0, -2)) * glm::rotate(dmat4(1), 1.5, dvec3(0, 1, 0)) *
-                        glm::translate(dmat4(1), dvec3(0, 0, 3.5))));
+  const dmat4 turned = glm::translate(dmat4(1), dvec3(0, 0, -0.6)) * glm::rotate(dmat4(1), 1.5, dvec3(0, 1, 0)) *
+                       glm::translate(dmat4(1), dvec3(0, 0, 2));
+  const LayerState then = state_of(points), now = state_of(moved(points, turned));
   Correspondences matched;  // correspond() would have left out the points behind the eye
   const auto all = match(then, now);
   for (std::size_t i = 0; i < all.then_px.size(); ++i)
