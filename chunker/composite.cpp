@@ -130,6 +130,14 @@ std::uint64_t texel_pair(Texel left, Texel right) {
   return packed;
 }
 
+/// Also pixels that show nothing need weights that add up to one.
+Footprints clear_footprints() {
+  Footprints f{};
+  std::fill_n(f.weight_x, kRunPixels, weight_pair(0));
+  std::fill_n(f.weight_y, kRunPixels, weight_pair(0));
+  return f;
+}
+
 /// Two texel rows under a footprint, from a window or straight from the chunks.
 struct WindowSource {
   const Window& window;
@@ -146,8 +154,9 @@ struct SpriteSource {
 template <typename Source>
 void blend_pixels(const Source& source, const PixelTaps& taps, const Multiplier& multiplier,
                   const Tile& tile) {
+  const Footprints nothing = clear_footprints();
   for (int row = 0; row < tile.lines(); ++row) {
-    Footprints f{};
+    Footprints f = nothing;
     for (int k = 0; k < kRunPixels; ++k) {
       const TapPosition p = taps.at[row * kRunPixels + k];
       if (p.x == PixelTaps::kNothing) continue;

@@ -33,7 +33,7 @@ struct Multiplier {
   bool is_zero() const { return m == Linear16{}; }
 };
 
-/// The 2×2 texels under each pixel of a run. Pixels that show nothing have zero texels.
+/// The 2×2 texels under each pixel of a run. Pixels that show nothing have zero texels, and weights that add up to 256 all the same.
 struct Footprints {
   alignas(64) std::uint64_t top[kRunPixels];  ///< two texels side by side, left one in the low half
   alignas(64) std::uint64_t bottom[kRunPixels];
