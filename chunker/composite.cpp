@@ -292,7 +292,8 @@ CompositeCounters& CompositeCounters::operator+=(const CompositeCounters& o) {
   return *this;
 }
 
-CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_px, layers::vec3 background) {
+CompositeCounters composite_into(Frame& frame, std::span<const PlacedSprite> sprites, ivec2 display_px,
+                                 layers::vec3 background) {
   TALISMAN_CHECK_GE(display_px.x, 0);
   TALISMAN_CHECK_GE(display_px.y, 0);
   const std::vector<Visible> visible = visible_sprites(sprites);
@@ -300,18 +301,25 @@ CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_p
   PackedPixel packed_background;
   std::memcpy(&packed_background, &below, sizeof below);
 
-  CompositeResult result;
-  result.frame = {display_px.x, display_px.y,
-                  std::vector<Linear16>(static_cast<std::size_t>(display_px.x) * display_px.y)};
+  frame.width = display_px.x;
+  frame.height = display_px.y;
+  frame.pixels.resize(static_cast<std::size_t>(display_px.x) * display_px.y);
   const int bands = (display_px.y + kBandLines - 1) / kBandLines;
   std::vector<CompositeCounters> counters(bands);
   tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
     for (int band = range.begin(); band != range.end(); ++band) {
-      const auto compositor = std::make_unique<BandCompositor>(visible, packed_background, result.frame);
+      const auto compositor = std::make_unique<BandCompositor>(visible, packed_background, frame);
       counters[band] = compositor->run(band);
     }
   });
-  for (const CompositeCounters& c : counters) result.counters += c;
+  CompositeCounters sum;
+  for (const CompositeCounters& c : counters) sum += c;
+  return sum;
+}
+
+CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_px, layers::vec3 background) {
+  CompositeResult result;
+  result.counters = composite_into(result.frame, sprites, display_px, background);
   return result;
 }
 
