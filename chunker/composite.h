@@ -5,8 +5,9 @@
 ///
 ///   C ← S + C · (1 - αS)       per channel, premultiplied, 16-bit linear; "+" is over with αS = 0
 ///
-/// For each band only the sprites that touch it are visited; each is sampled bilinearly under its map (perspective divides per
-/// pixel), clear chunks are skipped, opaque runs replace. Bands are independent jobs; the bytes do not depend on their order.
+/// For each band only the sprites that touch it are visited; each is sampled bilinearly under its map
+/// (perspective divides per pixel), clear chunks are skipped, opaque runs replace. Bands are independent
+/// jobs; the bytes do not depend on their order.
 
 #include <cstdint>
 #include <span>
@@ -27,13 +28,15 @@ struct PlacedSprite {
 /// A finished picture, 16-bit linear premultiplied over an opaque background (alpha is always kOne).
 struct Frame {
   int width = 0, height = 0;
-  std::vector<Linear16> pixels;            ///< row by row
+  std::vector<Linear16> pixels;  ///< row by row
 };
 
 struct CompositeCounters {
-  std::int64_t sprite_bands = 0;           ///< sprite–band pairs visited
-  std::int64_t pixels_composited = 0;      ///< display pixels inside sprite rectangles, summed over sprites
-  std::int64_t chunks_skipped_clear = 0;   ///< pixel runs skipped because the sprite is clear there
+  std::int64_t sprite_bands = 0;          ///< sprite–band pairs visited
+  std::int64_t pixels_composited = 0;     ///< display pixels inside sprite rectangles, summed over sprites
+  std::int64_t chunks_skipped_clear = 0;  ///< pixel runs skipped because the sprite is clear there
+  CompositeCounters& operator+=(const CompositeCounters& o);
+  bool operator==(const CompositeCounters&) const = default;
 };
 
 struct CompositeResult {
@@ -41,8 +44,10 @@ struct CompositeResult {
   CompositeCounters counters;
 };
 
-/// Sprites back to front over `background` (linear 0 … 1). A map that is singular or not finite shows nothing.
-CompositeResult composite(std::span<const PlacedSprite> sprites, layers::ivec2 display_px, layers::vec3 background);
+/// Sprites back to front over `background` (linear 0 … 1). A map that is singular or not finite shows
+/// nothing.
+CompositeResult composite(std::span<const PlacedSprite> sprites, layers::ivec2 display_px,
+                          layers::vec3 background);
 
 /// sRGB bytes, 3 per pixel.
 std::vector<std::uint8_t> srgb_bytes(const Frame& frame);

@@ -3,13 +3,15 @@
 
 /// The pixel formats of the pixel side, all in one place.
 ///
-/// Working space: linear light, premultiplied alpha. A sprite texel is four bytes: RGB holds the square root of the
-/// premultiplied linear value, A holds linear alpha. Decoding is one multiply per channel and 8 bits do not band in the dark:
+/// Working space: linear light, premultiplied alpha. A sprite texel is four bytes: RGB holds the square root
+/// of the premultiplied linear value, A holds linear alpha. Decoding is one multiply per channel and 8 bits
+/// do not band in the dark:
 ///
 ///   linear16(rgb byte v) = v · v            (0 … 65025 = kOne)
 ///   linear16(alpha byte a) = a · 255        (0 … 65025)
 ///
-/// The compositor filters and composites in that 16-bit linear space, where 65025 is one. sRGB is applied only to the finished frame.
+/// The compositor filters and composites in that 16-bit linear space, where 65025 is one. sRGB is applied
+/// only to the finished frame.
 
 #include <cmath>
 #include <cstdint>
@@ -26,7 +28,8 @@ struct Texel {
   bool operator==(const Texel&) const = default;
 };
 
-/// Premultiplied linear colour in floating point, 0 … 1 (colour may exceed alpha for additive layers, never 1 after encoding).
+/// Premultiplied linear colour in floating point, 0 … 1 (colour may exceed alpha for additive layers, never 1
+/// after encoding).
 struct LinearColor {
   float r = 0, g = 0, b = 0, a = 0;
 };
@@ -38,7 +41,7 @@ struct Linear16 {
 };
 
 inline std::uint8_t encode_sqrt(float linear) {
-  const float clamped = linear > 0 ? (linear < 1 ? linear : 1.0f) : 0.0f;   // NaN becomes 0
+  const float clamped = linear > 0 ? (linear < 1 ? linear : 1.0f) : 0.0f;  // NaN becomes 0
   return static_cast<std::uint8_t>(std::sqrt(clamped) * 255.0f + 0.5f);
 }
 inline std::uint8_t encode_alpha(float linear) {

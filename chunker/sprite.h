@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Sprites in chunks [LS97 1.1]: the picture of a layer, stored as whole 32×32 chunks. A chunk in which nothing was drawn is
-/// not stored. Byte counts are those of the stored chunks plus one reference per chunk.
+/// Sprites in chunks [LS97 1.1]: the picture of a layer, stored as whole 32×32 chunks. A chunk in which
+/// nothing was drawn is not stored. Byte counts are those of the stored chunks plus one reference per chunk.
 
 #include <cstdint>
 #include <span>
@@ -23,24 +23,29 @@ class Sprite {
   Sprite() = default;
   /// A clear sprite of `size_px` texels (each ≥ 0).
   explicit Sprite(layers::ivec2 size_px);
+  /// A sprite of finished chunks, stored in the order given; `places` are row · columns + column. Clear ones
+  /// are dropped.
+  static Sprite assemble(layers::ivec2 size_px, std::span<const int> places, std::span<const Chunk> chunks);
 
   layers::ivec2 size_px() const { return size_px_; }
-  layers::ivec2 chunks() const { return chunks_; }         ///< columns, rows
+  layers::ivec2 chunks() const { return chunks_; }  ///< columns, rows
   /// The stored chunk at (column, row), or null where it is clear.
   const Chunk* chunk(int column, int row) const;
   /// Stores a chunk unless it is clear (then drops what was there). Texels outside size_px must be clear.
-  /// Different chunks may be stored from different threads only through `assemble`.
+  /// Not for several threads at once; those finish their chunks on their own and join them by `assemble`.
   void store(int column, int row, const Chunk& chunk);
 
-  Texel texel(int x, int y) const;                         ///< clear outside
+  Texel texel(int x, int y) const;  ///< clear outside
   std::int64_t stored_chunks() const;
   std::int64_t clear_chunks() const;
-  std::int64_t bytes() const;                              ///< stored chunks and references
+  std::int64_t bytes() const;  ///< stored chunks and references
 
  private:
+  void release(std::int32_t& reference);
+
   layers::ivec2 size_px_{0, 0};
   layers::ivec2 chunks_{0, 0};
-  std::vector<std::int32_t> reference_;                    ///< index into storage_, -1: clear
+  std::vector<std::int32_t> reference_;  ///< index into storage_, -1: clear
   std::vector<Chunk> storage_;
 };
 
@@ -48,7 +53,7 @@ class Sprite {
 class SpriteStore {
  public:
   void put(int layer, Sprite sprite);
-  const Sprite* find(int layer) const;                     ///< null if there is none
+  const Sprite* find(int layer) const;  ///< null if there is none
   void drop(int layer);
   std::int64_t bytes() const;
 

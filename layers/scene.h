@@ -3,13 +3,14 @@
 
 /// What there is to draw, and where it is at one time.
 ///
-/// A `Scene` is plain data: meshes, materials, textures, nodes, animation, lights, cameras and the parts that join
-/// them. `Scene::at(t)` is a pure function of time: it evaluates every node, camera and light and returns a
-/// `SceneFrame`. Nothing here is changed by rendering.
+/// A `Scene` is plain data: meshes, materials, textures, nodes, animation, lights, cameras and the parts that
+/// join them. `Scene::at(t)` is a pure function of time: it evaluates every node, camera and light and
+/// returns a `SceneFrame`. Nothing here is changed by rendering.
 ///
-/// Conventions: metres, right-handed, y up; cameras look along their own -z; times in seconds; angles in radians;
-/// colours are linear light, RGB, without alpha unless it is named. Texture bytes are sRGB with straight alpha, row 0 at v = 0
-/// (v grows downwards, as in glTF). Triangles are counter-clockwise seen from their front.
+/// Conventions: metres, right-handed, y up; cameras look along their own -z; times in seconds; angles in
+/// radians; colours are linear light, RGB, without alpha unless it is named. Texture bytes are sRGB with
+/// straight alpha, row 0 at v = 0 (v grows downwards, as in glTF). Triangles are counter-clockwise seen from
+/// their front.
 ///
 /// Parts and layers: [LS97 2.4]. Parts are the smallest renderable units.
 
@@ -28,13 +29,13 @@ namespace talisman::layers {
 /// Indexed triangles. Every vertex array but `positions` is either empty or as long as `positions`.
 struct Mesh {
   std::string name;
-  std::vector<vec3> positions;             ///< metres, in the space of the part's node
-  std::vector<vec3> normals;               ///< unit length
-  std::vector<vec2> uvs;                   ///< texture coordinates, 1 = one repeat
-  std::vector<vec3> colors;                ///< linear, multiplied with the base colour
-  std::vector<std::uint32_t> indices;      ///< three per triangle
-  std::vector<glm::uvec4> joints;          ///< skinning: indices into Skin::joints
-  std::vector<vec4> weights;               ///< skinning: sum 1
+  std::vector<vec3> positions;         ///< metres, in the space of the part's node
+  std::vector<vec3> normals;           ///< unit length
+  std::vector<vec2> uvs;               ///< texture coordinates, 1 = one repeat
+  std::vector<vec3> colors;            ///< linear, multiplied with the base colour
+  std::vector<std::uint32_t> indices;  ///< three per triangle
+  std::vector<glm::uvec4> joints;      ///< skinning: indices into Skin::joints
+  std::vector<vec4> weights;           ///< skinning: ≥ 0; divided by their sum where they are used
   int triangle_count() const { return static_cast<int>(indices.size() / 3); }
 };
 
@@ -43,64 +44,64 @@ struct Texture {
   std::string name;
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
-  bool has_alpha = false;                  ///< some texel has alpha < 255
+  bool has_alpha = false;  ///< some texel has alpha < 255
 };
 
 struct Material {
   std::string name;
   vec3 base_color{0.8f, 0.8f, 0.8f};
-  float opacity = 1;                       ///< 0 … 1
-  int texture = -1;                        ///< index into Scene::textures, multiplied with the base colour; -1: none
+  float opacity = 1;  ///< 0 … 1
+  int texture = -1;   ///< index into Scene::textures, multiplied with the base colour; -1: none
   vec3 specular{0, 0, 0};
-  float shininess = 0;                     ///< Blinn-Phong exponent, ≥ 0
+  float shininess = 0;  ///< Blinn-Phong exponent, ≥ 0
   vec3 emissive{0, 0, 0};
-  bool two_sided = false;                  ///< otherwise back faces are culled
-  bool unlit = false;                      ///< base colour as it is (sky, backdrops)
+  bool two_sided = false;  ///< otherwise back faces are culled
+  bool unlit = false;      ///< base colour as it is (sky, backdrops)
 };
 
 /// The joints that a skinned mesh follows.
 struct Skin {
   std::string name;
-  std::vector<int> joints;                 ///< node indices
-  std::vector<dmat4> joint_from_mesh;      ///< inverse bind matrices, as many
+  std::vector<int> joints;             ///< node indices
+  std::vector<dmat4> joint_from_mesh;  ///< inverse bind matrices, as many
 };
 
 struct Light {
   enum class Kind { Ambient, Directional, Point };
   std::string name;
   Kind kind = Kind::Directional;
-  int node = -1;                           ///< -1: fixed in the world
-  dvec3 position{0, 0, 0};                 ///< in the node's space (Point)
-  dvec3 direction{0, -1, 0};               ///< the way the light travels, in the node's space (Directional)
-  vec3 color{1, 1, 1};                     ///< linear, intensity included
+  int node = -1;              ///< -1: fixed in the world
+  dvec3 position{0, 0, 0};    ///< in the node's space (Point)
+  dvec3 direction{0, -1, 0};  ///< the way the light travels, in the node's space (Directional)
+  vec3 color{1, 1, 1};        ///< linear, intensity included
 };
 
 struct Camera {
   std::string name;
-  int node = -1;                           ///< the camera looks along the node's -z; -1: at the origin
-  double fov_y_rad = 0.9;                  ///< (0, π)
-  double near_m = 0.1, far_m = 1e4;        ///< 0 < near < far
+  int node = -1;                     ///< the camera looks along the node's -z; -1: at the origin
+  double fov_y_rad = 0.9;            ///< (0, π)
+  double near_m = 0.1, far_m = 1e4;  ///< 0 < near < far
 };
 
 /// Translation, rotation, scale: local = T · R · S.
 struct Transform {
   dvec3 translation{0, 0, 0};
-  glm::dquat rotation{1, 0, 0, 0};         ///< w, x, y, z
+  glm::dquat rotation{1, 0, 0, 0};  ///< w, x, y, z
   dvec3 scale{1, 1, 1};
   dmat4 matrix() const;
 };
 
 struct Node {
   std::string name;
-  int parent = -1;                         ///< parents come before their children
-  Transform local;                         ///< where no track moves it
+  int parent = -1;  ///< parents come before their children
+  Transform local;  ///< where no track moves it
 };
 
 enum class Interpolation { Step, Linear, CatmullRom };
 
 template <typename T>
 struct Keys {
-  std::vector<double> times_s;             ///< strictly increasing
+  std::vector<double> times_s;  ///< strictly increasing
   std::vector<T> values;
   Interpolation interpolation = Interpolation::Linear;
 };
@@ -115,14 +116,16 @@ struct TransformTrack {
 };
 
 /// A flight along a spline (centripetal Catmull-Rom through the positions). The node's -z looks along the
-/// tangent, or at `target` where that is given; positive bank rolls to the right.
+/// tangent, or at `target` where that is given; positive bank rolls to the right. Positions and targets are
+/// in the space of the node's parent. Where the direction is lost (standing still, at the target, straight up
+/// or down) see layers/animation.h.
 struct FlightTrack {
   Keys<dvec3> position;
-  Keys<dvec3> target;                      ///< empty: look along the path
-  Keys<double> bank_rad;                   ///< empty: level
+  Keys<dvec3> target;     ///< empty: look along the path
+  Keys<double> bank_rad;  ///< empty: level
 };
 
-/// The node turns with constant rate about an axis through its own origin.
+/// The node turns with constant rate about an axis through its own origin, given in its own space.
 struct SpinTrack {
   dvec3 axis{0, 1, 0};
   double rate_rad_per_s = 1;
@@ -135,11 +138,11 @@ struct Track {
 
 /// A mesh instance with its material: the smallest renderable unit [LS97 2.4].
 struct Part {
-  std::string name;                        ///< path of its node, "/" between names, plus "#k" for the k-th mesh of a node
+  std::string name;  ///< path of its node, "/" between names, plus "#k" for the k-th mesh of a node
   int node = -1;
   int mesh = -1;
   int material = -1;
-  int skin = -1;                           ///< index into Scene::skins; -1: rigid
+  int skin = -1;  ///< index into Scene::skins; -1: rigid
 };
 
 struct CameraState {
@@ -150,8 +153,8 @@ struct CameraState {
 
 struct LightState {
   Light::Kind kind = Light::Kind::Directional;
-  dvec3 position{0, 0, 0};                 ///< world
-  dvec3 direction{0, -1, 0};               ///< world, unit length
+  dvec3 position{0, 0, 0};    ///< world
+  dvec3 direction{0, -1, 0};  ///< world, unit length
   vec3 color{1, 1, 1};
   bool operator==(const LightState&) const = default;
 };
@@ -162,9 +165,9 @@ struct Scene;
 struct SceneFrame {
   const Scene* scene = nullptr;
   double time_s = 0;
-  std::vector<dmat4> world_from_node;      ///< one per node
+  std::vector<dmat4> world_from_node;  ///< one per node
   CameraState camera;
-  std::vector<LightState> lights;          ///< one per light
+  std::vector<LightState> lights;  ///< one per light
 };
 
 struct Scene {
@@ -177,29 +180,34 @@ struct Scene {
   std::vector<Light> lights;
   std::vector<Camera> cameras;
   std::vector<Part> parts;
-  vec3 background{0, 0, 0};                ///< linear, behind all layers
+  vec3 background{0, 0, 0};  ///< linear, behind all layers
   int active_camera = 0;
 
-  /// The scene at time `t_s` (any finite value; tracks hold or loop outside their keys). Pure.
-  /// Cost: O(nodes + tracks · log keys).
+  /// The scene at time `t_s` (any finite value; tracks hold or loop outside their keys). Pure, and finite for
+  /// a scene without defects (a product of matrices that overflows leaves the node with its parent). Tracks
+  /// of one node apply in their order. The camera's matrix is rigid: a scale above its node does not scale
+  /// its near plane. Cost: O(nodes + tracks · log keys).
   SceneFrame at(double t_s) const;
 
   /// The end of the last track, seconds; 0 when nothing moves by keys.
   double duration_s() const;
 };
 
-/// World positions of a part's vertices at `frame`: node transform, or linear-blend skinning where the part has a
-/// skin. Cost: O(vertices).
+/// World positions of a part's vertices at `frame`: node transform, or linear-blend skinning where the part
+/// has a skin: p' = Σ wₖ Mₖ p / Σ wₖ; a vertex whose weights are all 0 follows the first joint it names.
+/// Cost: O(vertices).
 std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part);
 
 /// World-from-vertex matrix of each joint of a skinned part: world_from_joint · joint_from_mesh.
 std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part);
 
-/// Does the part's geometry change its shape (skin), or does its node or an ancestor move by a track?
+/// Does `node` or an ancestor move by a track? A track whose keys are all equal moves nothing. (A skinned
+/// part moves with its joints whatever its node does.) Cost: O(depth · tracks).
 bool is_animated(const Scene& scene, int node);
 
-/// First broken rule of the scene in words ("mesh 'hull': index 812 of triangle 270, rule: below 811 vertices"), or an
-/// empty string. Checks indices, array lengths, finite numbers, parent order, key order. Readers call it on whatever they read.
+/// First broken rule of the scene in words ("mesh 'hull': index 812 of triangle 270, rule: below 811
+/// vertices"), or an empty string. Checks indices, array lengths, finite numbers, parent order, key order.
+/// Parts need a node, a mesh and a material. Readers call it on whatever they read.
 std::string first_defect(const Scene& scene);
 
 }  // namespace talisman::layers

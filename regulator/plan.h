@@ -3,10 +3,13 @@
 
 /// What is worth drawing again? The plan of one frame, as data [LS97 6].
 ///
-/// Assessments (one per layer) go in, decisions (one per layer) come out. `regulate` is pure: it draws nothing, reads no clock
-/// and remembers nothing, so a whole sequence can be planned, printed and tested without a pixel.
+/// Assessments (one per layer) go in, decisions (one per layer) come out. `regulate` is pure: it draws
+/// nothing, reads no clock and remembers nothing, so a whole sequence can be planned, printed and tested
+/// without a pixel.
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -17,23 +20,26 @@
 namespace talisman::regulator {
 
 enum class Policy {
-  Direct,        ///< the whole scene in one pass, no sprites: the truth
-  Reference,     ///< every layer, every frame, through sprites
-  Hold,          ///< every N frames; shown where it was in between (triple framing is N = 3)
-  Interpolate,   ///< every N frames, warped in between
-  Threshold,     ///< when a fiducial exceeds its threshold
+  Direct,       ///< the whole scene in one pass, no sprites: the truth
+  Reference,    ///< every layer, every frame, through sprites
+  Hold,         ///< every N frames; shown where it was in between (triple framing is N = 3)
+  Interpolate,  ///< every N frames, warped in between
+  Threshold,    ///< when a fiducial exceeds its threshold
 };
+inline constexpr std::array kAllPolicies = {Policy::Direct, Policy::Reference, Policy::Hold,
+                                            Policy::Interpolate, Policy::Threshold};
 std::string_view name(Policy policy);
+std::optional<Policy> policy_from_name(std::string_view text);
 
 enum class Action { Reuse, Rerender, Drop };
-std::string_view name(Action action);   ///< "reuse", "rerender", "drop"
+std::string_view name(Action action);  ///< "reuse", "rerender", "drop"
 
 /// What drawing a layer once costs, as far as it can be told without drawing.
 struct LayerCost {
-  std::int64_t polygons = 0;    ///< triangles sent to the renderer
-  std::int64_t pixels = 0;      ///< texels of the sprite's rectangle
-  std::int64_t chunks = 0;      ///< 32×32 chunks of the sprite's rectangle
-  std::int64_t bytes = 0;       ///< of the sprite, uncompressed, clear chunks included
+  std::int64_t polygons = 0;  ///< triangles sent to the renderer
+  std::int64_t pixels = 0;    ///< texels of the sprite's rectangle
+  std::int64_t chunks = 0;    ///< 32×32 chunks of the sprite's rectangle
+  std::int64_t bytes = 0;     ///< of the sprite, uncompressed, clear chunks included
   bool operator==(const LayerCost&) const = default;
 };
 
@@ -41,25 +47,26 @@ struct LayerCost {
 struct LayerAssessment {
   int layer = -1;
   bool in_view = false;
-  bool has_sprite = false;             ///< it was rendered before
-  bool identical = false;              ///< its state equals the state at its last render: reuse loses nothing
+  bool has_sprite = false;  ///< it was rendered before
+  bool identical = false;   ///< its state equals the state at its last render: reuse loses nothing
   int frames_since_render = 0;
-  warp::FitResult fitted;              ///< valid if has_sprite
-  fiducials::Report fiducials;         ///< valid if has_sprite
-  double held_geometric_px = 0;        ///< error of showing the sprite where it was (identity warp)
-  LayerCost cost;                      ///< of rendering it now
+  int matched_points = 0;        ///< correspondences behind `fitted`; too few say nothing about the motion
+  warp::FitResult fitted;        ///< valid if has_sprite
+  fiducials::Report fiducials;   ///< valid if has_sprite
+  double held_geometric_px = 0;  ///< error of showing the sprite where it was (identity warp)
+  LayerCost cost;                ///< of rendering it now
   layers::LayerPreferences preferences;
 };
 
 /// Options of all policies. Thresholds: a layer is rendered again when a fiducial exceeds its threshold.
 struct RegulatorOptions {
   Policy policy = Policy::Threshold;
-  int hold_frames = 3;                 ///< Hold, Interpolate: N ≥ 1; 1 is every frame
-  double geometric_px = 4;             ///< ≥ 0; 0: reuse only what is identical; fewer renders as it grows
-  double magnification = 1.5;          ///< ≥ 1: texels stretched by more than this are drawn again; 0: not regulated
-  double minification = 0.5;           ///< 0 … 1: texels squeezed by more; 0: not regulated
-  double anisotropy = 2;               ///< ≥ 1; 0: not regulated
-  double uncovered_px = 1;             ///< ≥ 0: a cut side may be this far in view; negative: not regulated
+  int hold_frames = 3;         ///< Hold, Interpolate: N ≥ 1; 1 is every frame
+  double geometric_px = 4;     ///< ≥ 0; 0: reuse only what is identical; fewer renders as it grows
+  double magnification = 1.5;  ///< ≥ 1: texels stretched by more than this are drawn again; 0: not regulated
+  double minification = 0.5;   ///< 0 … 1: texels squeezed by more; 0: not regulated
+  double anisotropy = 2;       ///< ≥ 1; 0: not regulated
+  double uncovered_px = 1;     ///< ≥ 0: a cut side may be this far in view; negative: not regulated
   bool operator==(const RegulatorOptions&) const = default;
 };
 
@@ -67,16 +74,17 @@ struct RegulatorOptions {
 struct LayerDecision {
   int layer = -1;
   Action action = Action::Drop;
-  std::string reason;                  ///< in words and numbers: "geometric 4.7 > 4 px", "first_appearance", "policy: hold 3", "out_of_view"
-  warp::Warp shown_warp;               ///< carries the sprite as rendered to where it is shown; identity for a fresh one
-  double shown_geometric_px = 0;       ///< error of what is displayed; 0 for a fresh sprite
-  double warp_geometric_px = 0;        ///< error that the warp would have had (also when it was rejected)
-  LayerCost cost;                      ///< spent: zero unless rendered
+  std::string reason;     ///< in words and numbers: "geometric 4.7 > 4 px", "first_appearance", "policy: hold
+                          ///< 3", "out_of_view"
+  warp::Warp shown_warp;  ///< carries the sprite as rendered to where it is shown; identity for a fresh one
+  double shown_geometric_px = 0;  ///< error of what is displayed; 0 for a fresh sprite
+  double warp_geometric_px = 0;   ///< error that the warp would have had (also when it was rejected)
+  LayerCost cost;                 ///< spent: zero unless rendered
 };
 
 struct FramePlan {
   int frame = 0;
-  std::vector<LayerDecision> decisions;   ///< by layer id
+  std::vector<LayerDecision> decisions;  ///< by layer id
 };
 
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options);
@@ -84,8 +92,9 @@ FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, cons
 /// First broken rule ("hold_frames is 0, must be at least 1"), or empty.
 std::string first_defect(const RegulatorOptions& options);
 
-/// How often a layer is expected to be shown before it is drawn again: N for Hold and Interpolate, 1 for Direct and Reference;
-/// for Threshold `threshold_default`.
+/// For how many later frames a sprite is expected to be moved by a warp: 0 where none is (Direct, Reference,
+/// Hold, or a threshold of 0 px), N - 1 for Interpolate, `threshold_default` for Threshold. Extents grow in
+/// proportion.
 double expected_reuse_frames(const RegulatorOptions& options, double threshold_default = 8);
 
 }  // namespace talisman::regulator

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What goes wrong outside the program. Only readers and writers in this folder throw; `main` catches, prints one line
-/// `error: FILE:LINE: what, the value, the rule` on stderr and returns the exit code.
+/// What goes wrong outside the program. Only readers and writers in this folder throw; `main` catches, prints
+/// one line `error: FILE:LINE: what, the value, the rule` on stderr and returns the exit code.
 
 #include <stdexcept>
 #include <string>
@@ -26,6 +26,12 @@ class InputError : public std::runtime_error {
 
 /// An output could not be written (disk full, folder not writable), a child failed: exit code 1.
 class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// An output could not be written after some frames were: they are complete and stay. Exit code 3.
+class PartialResult : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };

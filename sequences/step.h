@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// One frame of the pipeline: the only place where the decision side (layers, warp, fiducials, regulator) and the pixel side
-/// (chunker) meet.
+/// One frame of the pipeline: the only place where the decision side (layers, warp, fiducials, regulator) and
+/// the pixel side (chunker) meet.
 ///
 ///   scene.at(t) → capture → correspond → fit → assess → regulate → [render →] [composite →] report
 ///
-/// Without a `PixelSide` a frame is planned and nothing is drawn; the decisions are the same. A frame may also be planned while its pictures
-/// are left for later: a sprite that was planned but not drawn is drawn, at the time for which it was planned, when a frame that must be shown
-/// needs it. From this follow --frames and --resume: any frame of a sequence comes out with the same bytes, however it is reached.
+/// Without a `PixelSide` a frame is planned and nothing is drawn; the decisions are the same. A frame may
+/// also be planned while its pictures are left for later: a sprite that was planned but not drawn is drawn,
+/// at the time for which it was planned, when a frame that must be shown needs it. From this follow --frames
+/// and --resume: any frame of a sequence comes out with the same bytes, however it is reached.
 
 #include <cstdint>
 #include <optional>
@@ -32,7 +33,7 @@ struct Settings {
   warp::FitOptions fit;
   layers::View view;
   layers::BoundKind bound = layers::BoundKind::Box8;
-  layers::ExtentOptions extents;       ///< expected_reuse_frames is the default of policies that do not fix it
+  layers::ExtentOptions extents;  ///< expected_reuse_frames is the default of policies that do not fix it
   layers::PlacementOptions placement;  ///< resolution_scale is multiplied with the layer's own
   chunker::RenderOptions render;
   double fps = 24;
@@ -44,15 +45,15 @@ struct Pipeline {
   const layers::Scene& scene;
   const layers::LayerSet& layers;
   Settings settings;
-  std::vector<layers::LayerBound> bounds;      ///< one per layer
+  std::vector<layers::LayerBound> bounds;  ///< one per layer
 };
 
 /// What is remembered of one layer: how it was when it was last rendered.
 struct LayerMemory {
-  std::optional<layers::LayerState> then;      ///< empty: never rendered
+  std::optional<layers::LayerState> then;  ///< empty: never rendered
   layers::SpritePlacement placement;
   int frame_rendered = -1;
-  bool drawn = false;                          ///< the sprite store holds that picture (false: planned only)
+  bool drawn = false;  ///< the sprite store holds that picture (false: planned only)
 };
 
 /// All that survives a frame.
@@ -77,23 +78,25 @@ struct ShownSprite {
 struct FrameReport {
   int frame = 0;
   regulator::FramePlan plan;
-  std::vector<regulator::LayerAssessment> assessments;   ///< by layer id
-  std::vector<ShownSprite> shown;                        ///< back to front
-  int layers_assessed = 0;                               ///< in view with an old sprite: fitted and judged
-  chunker::RenderCounters render;                        ///< summed over the layers rendered for this frame
+  std::vector<regulator::LayerAssessment> assessments;  ///< by layer id
+  std::vector<ShownSprite> shown;                       ///< back to front
+  int layers_assessed = 0;                              ///< in view with an old sprite: fitted and judged
+  std::int64_t pixels_reference = 0;  ///< texels that `reference` would render for this frame
+  chunker::RenderCounters render;     ///< summed over the layers rendered for this frame
   std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
-  std::vector<std::int64_t> sprite_bytes_by_layer;       ///< alive after this frame
   chunker::CompositeCounters composite;
-  std::int64_t sprite_bytes = 0;                         ///< in the store after this frame
-  int late_renders = 0;                                  ///< sprites drawn now that had been planned for an earlier frame
+  std::int64_t sprite_bytes = 0;  ///< in the store after this frame
+  int late_renders = 0;           ///< sprites drawn now that had been planned for an earlier frame
   StageTimes times;
-  chunker::Frame picture;                                ///< empty when only planned
+  chunker::Frame picture;  ///< empty when only planned
 };
 
 /// Plans frame `frame` (frames must come in order from 0) and, if `prepared` is given, draws it.
-FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame, const chunker::PreparedScene* prepared);
+FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
+                 const chunker::PreparedScene* prepared);
 
-/// The frame as the policies `direct` and `reference` show it, without touching any state: the truths of --quality.
+/// The frame as the policies `direct` and `reference` show it, without touching any state: the truths of
+/// --quality.
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared);
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared);
 

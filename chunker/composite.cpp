@@ -1,0 +1,328 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chunker/composite.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <memory>
+#include <optional>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include "chunker/blend_constants.h"
+#include "chunker/sampling.h"
+#include "chunker/span_composite.h"
+#include "chunker/window.h"
+#include "layers/check.h"
+
+namespace talisman::chunker {
+namespace {
+
+using layers::ivec2;
+using layers::RectI;
+
+static_assert(kRunPixels == kBandLines, "tiles are square");
+static_assert(sizeof(Linear16) == sizeof(PackedPixel));
+
+/// A sprite that shows something, ready for sampling.
+struct Visible {
+  const Sprite* sprite = nullptr;
+  TapMap map;
+  Multiplier multiplier;
+};
+
+std::vector<Visible> visible_sprites(std::span<const PlacedSprite> sprites) {
+  std::vector<Visible> visible;
+  for (const PlacedSprite& placed : sprites) {
+    TALISMAN_CHECK(placed.sprite != nullptr);
+    const ivec2 size = placed.sprite->size_px();
+    TALISMAN_CHECK_LE(std::max(size.x, size.y), kMaxSpriteSide);
+    const auto map = tap_map(placed.screen_from_sprite);
+    const Multiplier multiplier = fixed_multiplier(placed.color_multiplier, placed.alpha_multiplier);
+    if (size.x > 0 && size.y > 0 && map && !multiplier.is_zero())
+      visible.push_back({placed.sprite, *map, multiplier});
+  }
+  return visible;
+}
+
+/// A display tile and where it lies; the part outside the display is drawn but not kept.
+struct Tile {
+  int x = 0, y = 0;
+  ivec2 display{0, 0};
+  PackedPixel* pixels = nullptr;  ///< kBandLines rows of kRunPixels
+  int columns() const { return std::min(kRunPixels, display.x - x); }
+  int lines() const { return std::min(kBandLines, display.y - y); }
+};
+
+/// Half-open bounds of the first texels of footprints.
+struct TapBounds {
+  RectI rect{1 << 30, 1 << 30, -(1 << 30), -(1 << 30)};
+  void include(int x, int y) {
+    rect = {std::min(rect.x0, x), std::min(rect.y0, y), std::max(rect.x1, x + 1), std::max(rect.y1, y + 1)};
+  }
+  /// All texels of those footprints.
+  RectI texels() const { return {rect.x0, rect.y0, rect.x1 + 1, rect.y1 + 1}; }
+};
+
+PixelRange intersection(PixelRange a, PixelRange b) {
+  return {std::max(a.first, b.first), std::min(a.last, b.last)};
+}
+
+/// Positions and covered pixels of an affine tile's lines, in sprite coordinates.
+struct AffineLines {
+  std::array<TapPosition, kBandLines> start;
+  std::array<PixelRange, kBandLines> pixels;
+  std::int64_t pixel_count = 0, line_count = 0;
+  TapBounds bounds;
+};
+
+AffineLines affine_lines(const Visible& v, const Tile& tile) {
+  AffineLines lines;
+  const ivec2 size = v.sprite->size_px();
+  for (int row = 0; row < tile.lines(); ++row) {
+    const auto start = run_start(v.map, tile.x, tile.y + row);
+    if (!start) continue;
+    const PixelRange range = intersection(pixels_touching(start->x, v.map.step_x, size.x, tile.columns()),
+                                          pixels_touching(start->y, v.map.step_y, size.y, tile.columns()));
+    if (range.empty()) continue;
+    lines.start[row] = *start;
+    lines.pixels[row] = range;
+    lines.pixel_count += range.last - range.first;
+    ++lines.line_count;
+    for (const int k : {range.first, range.last - 1}) {
+      lines.bounds.include(tap_texel(start->x + k * v.map.step_x), tap_texel(start->y + k * v.map.step_y));
+    }
+  }
+  return lines;
+}
+
+/// Positions of all pixels of a tile, one by one: perspective, and minified so far that a window does not
+/// hold the tile.
+struct PixelTaps {
+  static constexpr std::int64_t kNothing = INT64_MIN;
+  std::array<TapPosition, kBandLines * kRunPixels> at;
+  std::int64_t pixel_count = 0, line_count = 0;
+  TapBounds bounds;
+};
+
+/// Calls position(x, y) → optional<TapPosition> for every pixel.
+template <typename Position>
+void locate_pixels(const Tile& tile, PixelTaps& taps, const Position& position) {
+  taps.at.fill({PixelTaps::kNothing, 0});
+  for (int row = 0; row < tile.lines(); ++row) {
+    const std::int64_t before = taps.pixel_count;
+    for (int k = 0; k < tile.columns(); ++k) {
+      const std::optional<TapPosition> p = position(row, k);
+      if (!p) continue;
+      taps.at[row * kRunPixels + k] = *p;
+      taps.bounds.include(tap_texel(p->x), tap_texel(p->y));
+      ++taps.pixel_count;
+    }
+    taps.line_count += taps.pixel_count > before;
+  }
+}
+
+std::uint64_t texel_pair(Texel left, Texel right) {
+  const Texel pair[2] = {left, right};
+  std::uint64_t packed;
+  std::memcpy(&packed, pair, sizeof packed);
+  return packed;
+}
+
+/// Two texel rows under a footprint, from a window or straight from the chunks.
+struct WindowSource {
+  const Window& window;
+  std::uint64_t pair(int x, int y) const {
+    const Texel* at = window.texels() + (y - window.origin().y) * window.stride() + (x - window.origin().x);
+    return texel_pair(at[0], at[1]);
+  }
+};
+struct SpriteSource {
+  const Sprite& sprite;
+  std::uint64_t pair(int x, int y) const { return texel_pair(sprite.texel(x, y), sprite.texel(x + 1, y)); }
+};
+
+template <typename Source>
+void blend_pixels(const Source& source, const PixelTaps& taps, const Multiplier& multiplier,
+                  const Tile& tile) {
+  for (int row = 0; row < tile.lines(); ++row) {
+    Footprints f{};
+    for (int k = 0; k < kRunPixels; ++k) {
+      const TapPosition p = taps.at[row * kRunPixels + k];
+      if (p.x == PixelTaps::kNothing) continue;
+      f.top[k] = source.pair(tap_texel(p.x), tap_texel(p.y));
+      f.bottom[k] = source.pair(tap_texel(p.x), tap_texel(p.y) + 1);
+      f.weight_x[k] = weight_pair(tap_weight(p.x));
+      f.weight_y[k] = weight_pair(tap_weight(p.y));
+    }
+    blend_run(f, multiplier, tile.pixels + row * kRunPixels);
+  }
+}
+
+/// Composites one band; its buffers are used again by every tile.
+class BandCompositor {
+ public:
+  BandCompositor(std::span<const Visible> sprites, PackedPixel background, Frame& frame)
+      : sprites_(sprites), background_(background), frame_(frame) {}
+
+  CompositeCounters run(int band) {
+    collect(band);
+    Tile tile{0, band * kBandLines, {frame_.width, frame_.height}, tile_.data()};
+    for (; tile.x < frame_.width; tile.x += kRunPixels) {
+      tile_.fill(background_);
+      for (Touching& touching : touching_) {
+        if (tile.x + kRunPixels > touching.columns.first && tile.x < touching.columns.last)
+          lay(touching, tile);
+      }
+      keep(tile);
+    }
+    for (const Touching& touching : touching_) counters_.sprite_bands += touching.seen;
+    return counters_;
+  }
+
+ private:
+  struct Touching {
+    const Visible* visible;
+    PixelRange columns;
+    bool seen = false;
+  };
+
+  void collect(int band) {
+    const int first_line = band * kBandLines,
+              last_line = std::min(first_line + kBandLines, frame_.height) - 1;
+    for (const Visible& v : sprites_) {
+      const PixelRange columns =
+          columns_touched(v.map, v.sprite->size_px(), frame_.width, first_line, last_line);
+      if (!columns.empty()) touching_.push_back({&v, columns});
+    }
+  }
+
+  void lay(Touching& touching, const Tile& tile) {
+    const std::int64_t before = counters_.pixels_composited;
+    touching.visible->map.perspective ? lay_perspective(*touching.visible, tile)
+                                      : lay_affine(*touching.visible, tile);
+    touching.seen |= counters_.pixels_composited > before;
+  }
+
+  /// Counts what a tile shows; false when there is nothing to draw.
+  template <typename Positions>
+  bool count(const Positions& positions, const Sprite& sprite) {
+    counters_.pixels_composited += positions.pixel_count;
+    if (positions.pixel_count == 0) return false;
+    if (!is_clear(sprite, positions.bounds.texels())) return true;
+    counters_.chunks_skipped_clear += positions.line_count;
+    return false;
+  }
+
+  void lay_affine(const Visible& v, const Tile& tile) {
+    const AffineLines lines = affine_lines(v, tile);
+    if (!count(lines, *v.sprite)) return;
+    if (window_.gather(*v.sprite, lines.bounds.rect)) {
+      blend_tile(tile_job(v, lines), tile.pixels);
+    } else {
+      lay_minified(v, lines, tile);
+    }
+  }
+
+  TileJob tile_job(const Visible& v, const AffineLines& lines) const {
+    TileJob job;
+    job.window = window_.texels();
+    job.stride = static_cast<std::uint32_t>(window_.stride());
+    job.step_x = static_cast<std::uint32_t>(v.map.step_x);
+    job.step_y = static_cast<std::uint32_t>(v.map.step_y);
+    job.multiplier = v.multiplier;
+    const std::int64_t origin_x = static_cast<std::int64_t>(window_.origin().x) * 65536;
+    const std::int64_t origin_y = static_cast<std::int64_t>(window_.origin().y) * 65536;
+    for (int row = 0; row < kBandLines; ++row) {
+      job.lines[row] = {static_cast<std::uint32_t>(lines.start[row].x - origin_x),
+                        static_cast<std::uint32_t>(lines.start[row].y - origin_y), lines.pixels[row]};
+    }
+    return job;
+  }
+
+  void lay_minified(const Visible& v, const AffineLines& lines, const Tile& tile) {
+    PixelTaps taps;
+    locate_pixels(tile, taps, [&](int row, int k) -> std::optional<TapPosition> {
+      if (k < lines.pixels[row].first || k >= lines.pixels[row].last) return std::nullopt;
+      return TapPosition{lines.start[row].x + k * v.map.step_x, lines.start[row].y + k * v.map.step_y};
+    });
+    blend_pixels(SpriteSource{*v.sprite}, taps, v.multiplier, tile);
+  }
+
+  void lay_perspective(const Visible& v, const Tile& tile) {
+    PixelTaps taps;
+    const ivec2 size = v.sprite->size_px();
+    locate_pixels(tile, taps,
+                  [&](int row, int k) { return perspective_tap(v.map, tile.x + k, tile.y + row, size); });
+    if (!count(taps, *v.sprite)) return;
+    if (window_.gather(*v.sprite, taps.bounds.rect)) {
+      blend_pixels(WindowSource{window_}, taps, v.multiplier, tile);
+    } else {
+      blend_pixels(SpriteSource{*v.sprite}, taps, v.multiplier, tile);
+    }
+  }
+
+  void keep(const Tile& tile) {
+    for (int row = 0; row < tile.lines(); ++row) {
+      Linear16* line = frame_.pixels.data() + static_cast<std::size_t>(tile.y + row) * frame_.width + tile.x;
+      std::memcpy(static_cast<void*>(line), tile.pixels + row * kRunPixels,
+                  tile.columns() * sizeof(Linear16));
+    }
+  }
+
+  std::span<const Visible> sprites_;
+  PackedPixel background_;
+  Frame& frame_;
+  std::vector<Touching> touching_;
+  CompositeCounters counters_;
+  Window window_;
+  alignas(64) std::array<PackedPixel, kBandLines * kRunPixels> tile_;
+};
+
+}  // namespace
+
+CompositeCounters& CompositeCounters::operator+=(const CompositeCounters& o) {
+  sprite_bands += o.sprite_bands;
+  pixels_composited += o.pixels_composited;
+  chunks_skipped_clear += o.chunks_skipped_clear;
+  return *this;
+}
+
+CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_px, layers::vec3 background) {
+  TALISMAN_CHECK_GE(display_px.x, 0);
+  TALISMAN_CHECK_GE(display_px.y, 0);
+  const std::vector<Visible> visible = visible_sprites(sprites);
+  const Linear16 below = fixed_background(background);
+  PackedPixel packed_background;
+  std::memcpy(&packed_background, &below, sizeof below);
+
+  CompositeResult result;
+  result.frame = {display_px.x, display_px.y,
+                  std::vector<Linear16>(static_cast<std::size_t>(display_px.x) * display_px.y)};
+  const int bands = (display_px.y + kBandLines - 1) / kBandLines;
+  std::vector<CompositeCounters> counters(bands);
+  tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
+    for (int band = range.begin(); band != range.end(); ++band) {
+      const auto compositor = std::make_unique<BandCompositor>(visible, packed_background, result.frame);
+      counters[band] = compositor->run(band);
+    }
+  });
+  for (const CompositeCounters& c : counters) result.counters += c;
+  return result;
+}
+
+std::vector<std::uint8_t> srgb_bytes(const Frame& frame) {
+  static const auto table = [] {
+    std::array<std::uint8_t, kOne + 1> t{};
+    for (std::uint32_t v = 0; v <= kOne; ++v) t[v] = srgb_from_linear16(static_cast<std::uint16_t>(v));
+    return t;
+  }();
+  std::vector<std::uint8_t> bytes;
+  bytes.reserve(frame.pixels.size() * 3);
+  const auto encode = [](std::uint16_t v) { return table[std::min<std::uint32_t>(v, kOne)]; };
+  for (const Linear16& p : frame.pixels) bytes.insert(bytes.end(), {encode(p.r), encode(p.g), encode(p.b)});
+  return bytes;
+}
+
+}  // namespace talisman::chunker

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chunker/fragment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace talisman::chunker {
+namespace {
+
+/// Half the range of a plane over the 16 samples, and bounds with slack for the rounding of depth_at.
+float spread_of(const DepthPlane& p) { return 0.375f * (std::abs(p.dx) + std::abs(p.dy)); }
+
+/// A surface in one sample.
+struct SampleEntry {
+  float depth;
+  const Fragment* surface;
+};
+
+bool in_front(const SampleEntry& a, const SampleEntry& b) {
+  return a.depth > b.depth || (a.depth == b.depth && a.surface->order < b.surface->order);
+}
+
+Float4 composite_sorted(const std::vector<SampleEntry>& entries) {
+  SampleSum sum;
+  for (const SampleEntry& entry : entries) {
+    sum.add_behind(entry.surface->color);
+    if (entry.surface->opaque()) break;
+  }
+  return sum.color;
+}
+
+void insert_sorted(std::vector<SampleEntry>& entries, const SampleEntry& entry) {
+  entries.push_back(entry);
+  for (std::size_t i = entries.size() - 1; i > 0 && in_front(entries[i], entries[i - 1]); --i)
+    std::swap(entries[i], entries[i - 1]);
+}
+
+}  // namespace
+
+std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b) {
+  const float difference = a.z - b.z;
+  const float spread = spread_of(a) + spread_of(b);
+  const float slack = spread + 1e-6f * (std::abs(a.z) + std::abs(b.z) + spread);
+  if (difference > slack) return kFullMask;
+  if (difference < -slack) return 0;
+  std::uint32_t mask = 0;
+  for (int s = 0; s < kSamples; ++s) mask |= (depth_at(a, s) > depth_at(b, s) ? 1u : 0u) << s;
+  return static_cast<std::uint16_t>(mask);
+}
+
+FragmentBuffer::FragmentBuffer() {
+  for (Fragment& base : base_) base = Fragment();
+  first_.fill(-1);
+}
+
+void FragmentBuffer::clear(const LatticeBox& box, int max_fragments, MergeTolerance merge) {
+  for (int y = box.y0; y <= box.y1; ++y)
+    for (int x = box.x0; x <= box.x1; ++x) {
+      base_[y * kChunkSize + x].mask = 0;
+      first_[y * kChunkSize + x] = -1;
+    }
+  pool_.clear();
+  free_ = -1;
+  live_ = 0;
+  limit_ = max_fragments;
+  merge_ = merge;
+}
+
+bool FragmentBuffer::hides(int texel, std::uint16_t mask, const DepthPlane& depth) const {
+  const Fragment& base = base_[texel];
+  return base.mask != 0 && (nearer_samples(depth, base.depth) & mask) == 0;
+}
+
+Added FragmentBuffer::add(int texel, const Fragment& fragment) {
+  Fragment& base = base_[texel];
+  const bool whole = fragment.mask == kFullMask && fragment.opaque();
+  if (whole && (base.mask == 0 || nearer_samples(fragment.depth, base.depth) == kFullMask)) {
+    base = fragment;
+    if (first_[texel] >= 0) drop_hidden(texel);
+    return Added::BecameBase;
+  }
+  const std::int32_t last = first_[texel];
+  if (last >= 0 && merge_.any() && merge(pool_[last], fragment)) return Added::Merged;
+  if (live_ >= limit_) return Added::Refused;
+  const std::int32_t place = allocate();
+  pool_[place] = fragment;
+  pool_[place].next = last;
+  first_[texel] = place;
+  return Added::Stored;
+}
+
+bool FragmentBuffer::merge(Fragment& last, const Fragment& fragment) const {
+  if (last.mask & fragment.mask) return false;
+  const DepthPlane &a = last.depth, &b = fragment.depth;
+  const float apart = std::abs(a.z - b.z) + 0.5f * (std::abs(a.dx - b.dx) + std::abs(a.dy - b.dy));
+  if (!(apart <= merge_.depth * std::max(a.z, b.z))) return false;
+  for (int i = 0; i < 4; ++i)
+    if (!(std::abs(last.color[i] - fragment.color[i]) <= merge_.color)) return false;
+  last.mask = static_cast<std::uint16_t>(last.mask | fragment.mask);
+  return true;
+}
+
+void FragmentBuffer::drop_hidden(int texel) {
+  const DepthPlane& base = base_[texel].depth;
+  std::int32_t* link = &first_[texel];
+  while (*link >= 0) {
+    const std::int32_t place = *link;
+    Fragment& fragment = pool_[place];
+    // At equal depth the fragment, being earlier, stays in front.
+    if (fragment.mask & ~nearer_samples(base, fragment.depth)) {
+      link = &fragment.next;
+      continue;
+    }
+    *link = fragment.next;
+    fragment.next = free_;
+    free_ = place;
+    --live_;
+  }
+}
+
+std::int32_t FragmentBuffer::allocate() {
+  ++live_;
+  if (free_ < 0) {
+    pool_.emplace_back();
+    return static_cast<std::int32_t>(pool_.size()) - 1;
+  }
+  const std::int32_t place = free_;
+  free_ = pool_[place].next;
+  return place;
+}
+
+Float4 FragmentBuffer::resolve(int texel) const {
+  const bool covered = base_[texel].mask != 0;
+  if (first_[texel] < 0) return covered ? base_[texel].color : splat(0);
+  for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
+    if (!pool_[i].opaque()) return resolve_translucent(texel);
+  return resolve_opaque(texel);
+}
+
+Float4 FragmentBuffer::resolve_opaque(int texel) const {
+  static const Fragment nothing;
+  const Fragment& base = base_[texel];
+  std::array<SampleEntry, kSamples> nearest;
+  for (int s = 0; s < kSamples; ++s)
+    nearest[s] = base.mask != 0 ? SampleEntry{depth_at(base.depth, s), &base} : SampleEntry{-1, &nothing};
+  for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
+    for (unsigned left = pool_[i].mask; left != 0; left &= left - 1) {
+      const int s = __builtin_ctz(left);
+      const SampleEntry entry{depth_at(pool_[i].depth, s), &pool_[i]};
+      if (in_front(entry, nearest[s])) nearest[s] = entry;
+    }
+  std::array<Float4, kSamples> samples;
+  for (int s = 0; s < kSamples; ++s) samples[s] = nearest[s].surface->color;
+  return mean_of_samples(samples);
+}
+
+Float4 FragmentBuffer::resolve_translucent(int texel) const {
+  const Fragment& base = base_[texel];
+  std::array<Float4, kSamples> samples;
+  // Sorted once by the depth at the centre: the order in each sample is nearly the same.
+  std::vector<SampleEntry> surfaces, entries;
+  if (base.mask != 0) surfaces.push_back({base.depth.z, &base});
+  for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
+    surfaces.push_back({pool_[i].depth.z, &pool_[i]});
+  std::sort(surfaces.begin(), surfaces.end(), in_front);
+  for (int s = 0; s < kSamples; ++s) {
+    entries.clear();
+    for (const SampleEntry& surface : surfaces)
+      if (surface.surface->mask >> s & 1)
+        insert_sorted(entries, {depth_at(surface.surface->depth, s), surface.surface});
+    samples[s] = composite_sorted(entries);
+  }
+  return mean_of_samples(samples);
+}
+
+Float4 mean_of_samples(const std::array<Float4, kSamples>& samples) {
+  std::array<Float4, kSamples> sum = samples;
+  for (int half = kSamples / 2; half >= 1; half /= 2)
+    for (int i = 0; i < half; ++i) sum[i] = sum[2 * i] + sum[2 * i + 1];
+  return sum[0] * splat(1.0f / kSamples);
+}
+
+}  // namespace talisman::chunker

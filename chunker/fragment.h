@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a chunk's texels hold while it is drawn.
+///
+/// A texel has at most one *base*, an opaque surface that covers it wholly, and a list of *fragments*:
+/// partial cover, translucency, and opaque cover that crosses the base inside the texel. What is wholly
+/// behind the base is never stored, and a new base drops the fragments that it hides. A fragment merges with
+/// the last one stored for its texel when their masks are disjoint, their planes differ by no more than
+/// `depth` relative to their depth anywhere in the texel, and their colours by no more than `color` per
+/// channel [A §1 row 9, US 5,990,904]; the stored colour and plane stay. Both tolerances 0: nothing merges.
+///
+/// The buffer has a limit; a fragment beyond it is refused, and the caller draws smaller pieces [A §1 row 8,
+/// EP0850462B1].
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "chunker/pixel.h"
+#include "chunker/triangle.h"
+
+namespace talisman::chunker {
+
+/// A coloured piece of surface over one texel.
+struct Fragment {
+  Float4 color{0, 0, 0, 0};  ///< premultiplied
+  DepthPlane depth;
+  std::uint32_t order = 0;  ///< of its triangle: at equal depth the earlier one is in front
+  std::int32_t next = -1;   ///< of the same texel, -1: none
+  std::uint16_t mask = 0;
+  bool opaque() const { return color[3] >= 1; }
+};
+
+struct MergeTolerance {
+  float depth = 0, color = 0;
+  bool any() const { return depth > 0 || color > 0; }
+};
+
+/// Samples where a is strictly nearer than b. `frontness` answers the common cases (all, none) by bounds;
+/// their rounding slack is part of the bounds, so the answer is that of comparing all 16 depths.
+std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b);
+
+enum class Added { Stored, Merged, BecameBase, Refused };
+
+class FragmentBuffer {
+ public:
+  FragmentBuffer();
+
+  /// Empties all texels of the box and sets the limit for what follows.
+  void clear(const LatticeBox& box, int max_fragments, MergeTolerance merge);
+
+  /// True if the base hides all of `mask` of a surface that comes later.
+  bool hides(int texel, std::uint16_t mask, const DepthPlane& depth) const;
+
+  /// `fragment` comes after all that were added before.
+  Added add(int texel, const Fragment& fragment);
+
+  /// Premultiplied colour of a texel: in each sample front to back, then the mean of the 16.
+  Float4 resolve(int texel) const;
+
+  int live_fragments() const { return live_; }
+
+ private:
+  bool merge(Fragment& last, const Fragment& fragment) const;
+  void drop_hidden(int texel);
+  std::int32_t allocate();
+  Float4 resolve_opaque(int texel) const;
+  Float4 resolve_translucent(int texel) const;
+
+  std::array<Fragment, kChunkSize * kChunkSize> base_;       ///< mask 0: none
+  std::array<std::int32_t, kChunkSize * kChunkSize> first_;  ///< the last one stored; -1: none
+  std::vector<Fragment> pool_;
+  std::int32_t free_ = -1;
+  int live_ = 0, limit_ = 0;
+  MergeTolerance merge_;
+};
+
+/// Front-to-back accumulation of one sample.
+struct SampleSum {
+  Float4 color{0, 0, 0, 0};
+  float through = 1;
+  void add_behind(Float4 c) {
+    color += c * splat(through);
+    through *= 1 - c[3];
+  }
+};
+
+/// Pairwise, so that sixteen equal samples give exactly their value.
+Float4 mean_of_samples(const std::array<Float4, kSamples>& samples);
+
+}  // namespace talisman::chunker

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a PreparedScene holds: one pyramid per texture that some part uses, empty ones for the rest.
+
+#include <vector>
+
+#include "chunker/render.h"
+#include "chunker/texture.h"
+
+namespace talisman::chunker {
+
+struct PreparedScene::Impl {
+  const layers::Scene* scene = nullptr;
+  std::vector<Pyramid> pyramids;  ///< as many as Scene::textures
+};
+
+}  // namespace talisman::chunker

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// One chunk: triangles in, texels out.
+
+#include <span>
+
+#include "chunker/coverage.h"
+#include "chunker/draw_list.h"
+#include "chunker/fragment.h"
+#include "chunker/sprite.h"
+
+namespace talisman::chunker {
+
+/// Working memory of one thread, about 300 kB, used for one chunk after the other.
+class ChunkRenderer {
+ public:
+  ChunkRenderer(const DrawList& list, const RenderOptions& options) : list_(list), options_(options) {}
+
+  /// Draws `triangles` (ascending indices into the list) into the chunk whose first texel is `origin`. When
+  /// the fragments do not fit the chunk is drawn again in quarters, each again in quarters, down to single
+  /// texels, for which there is no limit. A texel does not depend on its neighbours, so the bytes are the
+  /// same.
+  Chunk draw(std::span<const std::uint32_t> triangles, layers::ivec2 origin);
+
+  const RenderCounters& counters() const { return counters_; }
+
+ private:
+  void draw_box(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out);
+  void draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out);
+  bool draw_triangles(std::span<const std::uint32_t> triangles, const LatticeBox& box);
+  bool draw_triangle(std::uint32_t order, const LatticeBox& box);
+  template <bool kTextured, bool kPerPixel>
+  bool draw_covered(const Triangle& t, const Batch& batch, std::uint32_t order, const LatticeBox& box);
+  bool add(int texel, const Fragment& fragment);
+
+  const DrawList& list_;
+  const RenderOptions& options_;
+  layers::ivec2 origin_{0, 0};
+  FragmentBuffer buffer_;
+  Coverage coverage_;
+  RenderCounters counters_;
+};
+
+}  // namespace talisman::chunker

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chunker/render.h"
+
+#include <algorithm>
+
+#include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/parallel_for.h>
+
+#include "chunker/bin.h"
+#include "chunker/clip.h"
+#include "chunker/raster.h"
+#include "layers/check.h"
+
+namespace talisman::chunker {
+namespace {
+
+/// Fixed point reaches this far; see kGuardBandPx.
+constexpr int kLargestSpritePx = static_cast<int>(2 * kGuardBandPx);
+
+void check_options(const layers::SpritePlacement& placement, const RenderOptions& options) {
+  TALISMAN_CHECK_LE(placement.size_px.x, kLargestSpritePx);
+  TALISMAN_CHECK_LE(placement.size_px.y, kLargestSpritePx);
+  TALISMAN_CHECK_GE(options.max_fragments_per_chunk, 16);
+  TALISMAN_CHECK(options.merge_depth >= 0 && options.merge_color >= 0);
+}
+
+std::vector<int> chunks_with_work(const Bins& bins) {
+  std::vector<int> chunks;
+  for (int c = 0; c + 1 < static_cast<int>(bins.first.size()); ++c)
+    if (!bins.of(c).empty()) chunks.push_back(c);
+  return chunks;
+}
+
+}  // namespace
+
+RenderCounters& RenderCounters::operator+=(const RenderCounters& o) {
+  polygons_in += o.polygons_in;
+  polygons_drawn += o.polygons_drawn;
+  polygon_chunks += o.polygon_chunks;
+  chunks_rendered += o.chunks_rendered;
+  chunks_clear += o.chunks_clear;
+  pixels_filled += o.pixels_filled;
+  pixels_shaded += o.pixels_shaded;
+  fragments += o.fragments;
+  fragments_merged += o.fragments_merged;
+  chunk_subdivisions += o.chunk_subdivisions;
+  texture_samples += o.texture_samples;
+  return *this;
+}
+
+PreparedScene::PreparedScene(const layers::Scene& scene) : impl_(std::make_unique<Impl>()) {
+  impl_->scene = &scene;
+  impl_->pyramids.resize(scene.textures.size());
+  std::vector<int> used;
+  for (const layers::Part& part : scene.parts)
+    if (part.material >= 0) used.push_back(scene.materials[part.material].texture);
+  std::sort(used.begin(), used.end());
+  used.erase(std::unique(used.begin(), used.end()), used.end());
+  std::erase_if(used, [&](int t) { return t < 0 || t >= static_cast<int>(scene.textures.size()); });
+  tbb::parallel_for(std::size_t{0}, used.size(), [&](std::size_t i) {
+    impl_->pyramids[used[i]] = build_pyramid(scene.textures[used[i]]);
+  });
+}
+
+PreparedScene::~PreparedScene() = default;
+PreparedScene::PreparedScene(PreparedScene&&) noexcept = default;
+PreparedScene& PreparedScene::operator=(PreparedScene&&) noexcept = default;
+
+const layers::Scene& PreparedScene::scene() const { return *impl_->scene; }
+
+std::int64_t PreparedScene::texture_bytes() const {
+  std::int64_t sum = 0;
+  for (const Pyramid& pyramid : impl_->pyramids) sum += pyramid.bytes();
+  return sum;
+}
+
+RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& frame,
+                    std::span<const int> parts, layers::ivec2 display_px,
+                    const layers::SpritePlacement& placement, const RenderOptions& options) {
+  check_options(placement, options);
+  DrawList list;
+  build_draw_list(prepared, frame, parts, display_px, placement, options, list);
+  const Bins bins = bin_triangles(list.triangles, list.size_px);
+  const std::vector<int> places = chunks_with_work(bins);
+  std::vector<Chunk> chunks(places.size());
+  tbb::enumerable_thread_specific<ChunkRenderer> renderers([&] { return ChunkRenderer(list, options); });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
+    ChunkRenderer& renderer = renderers.local();
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const layers::ivec2 origin(places[i] % bins.chunks.x * kChunkSize,
+                                 places[i] / bins.chunks.x * kChunkSize);
+      chunks[i] = renderer.draw(bins.of(places[i]), origin);
+    }
+  });
+  RenderResult result;
+  for (const ChunkRenderer& renderer : renderers) result.counters += renderer.counters();
+  result.sprite = Sprite::assemble(list.size_px, places, chunks);
+  result.counters.polygons_in = list.polygons_in;
+  result.counters.polygons_drawn = static_cast<std::int64_t>(list.triangles.size());
+  result.counters.chunks_rendered = result.sprite.stored_chunks();
+  result.counters.chunks_clear = result.sprite.clear_chunks();
+  return result;
+}
+
+}  // namespace talisman::chunker

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chunker/sprite.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "layers/check.h"
+
+namespace talisman::chunker {
+namespace {
+
+constexpr int kClear = -1;
+
+bool is_clear(const Chunk& chunk) {
+  static const Chunk clear{};
+  return std::memcmp(&chunk, &clear, sizeof(Chunk)) == 0;
+}
+
+}  // namespace
+
+Sprite::Sprite(layers::ivec2 size_px) : size_px_(size_px) {
+  TALISMAN_CHECK_GE(size_px.x, 0);
+  TALISMAN_CHECK_GE(size_px.y, 0);
+  chunks_ = {(size_px.x + kChunkSize - 1) / kChunkSize, (size_px.y + kChunkSize - 1) / kChunkSize};
+  reference_.assign(static_cast<std::size_t>(chunks_.x) * chunks_.y, kClear);
+}
+
+Sprite Sprite::assemble(layers::ivec2 size_px, std::span<const int> places, std::span<const Chunk> chunks) {
+  TALISMAN_CHECK_EQ(places.size(), chunks.size());
+  Sprite sprite(size_px);
+  sprite.storage_.reserve(chunks.size());
+  for (std::size_t i = 0; i < places.size(); ++i)
+    sprite.store(places[i] % sprite.chunks_.x, places[i] / sprite.chunks_.x, chunks[i]);
+  return sprite;
+}
+
+const Chunk* Sprite::chunk(int column, int row) const {
+  TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
+  const std::int32_t index = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
+  return index == kClear ? nullptr : &storage_[index];
+}
+
+void Sprite::store(int column, int row, const Chunk& chunk) {
+  TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
+  std::int32_t& reference = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
+  if (is_clear(chunk)) {
+    if (reference != kClear) release(reference);
+    return;
+  }
+  if (reference != kClear) {
+    storage_[reference] = chunk;
+    return;
+  }
+  reference = static_cast<std::int32_t>(storage_.size());
+  storage_.push_back(chunk);
+}
+
+void Sprite::release(std::int32_t& reference) {
+  // The last stored chunk moves into the gap, so that storage never holds a chunk that nobody refers to.
+  const auto last = static_cast<std::int32_t>(storage_.size()) - 1;
+  const std::int32_t gap = std::exchange(reference, kClear);
+  if (gap != last) {
+    storage_[gap] = storage_[last];
+    *std::find(reference_.begin(), reference_.end(), last) = gap;
+  }
+  storage_.pop_back();
+}
+
+Texel Sprite::texel(int x, int y) const {
+  if (x < 0 || y < 0 || x >= size_px_.x || y >= size_px_.y) return {};
+  const Chunk* stored = chunk(x / kChunkSize, y / kChunkSize);
+  return stored ? stored->texels[(y % kChunkSize) * kChunkSize + x % kChunkSize] : Texel{};
+}
+
+std::int64_t Sprite::stored_chunks() const { return static_cast<std::int64_t>(storage_.size()); }
+
+std::int64_t Sprite::clear_chunks() const {
+  return static_cast<std::int64_t>(reference_.size()) - stored_chunks();
+}
+
+std::int64_t Sprite::bytes() const {
+  return static_cast<std::int64_t>(storage_.size() * sizeof(Chunk) +
+                                   reference_.size() * sizeof(std::int32_t));
+}
+
+void SpriteStore::put(int layer, Sprite sprite) {
+  TALISMAN_CHECK_GE(layer, 0);
+  const auto index = static_cast<std::size_t>(layer);
+  if (index >= sprites_.size()) {
+    sprites_.resize(index + 1);
+    alive_.resize(index + 1, false);
+  }
+  sprites_[index] = std::move(sprite);
+  alive_[index] = true;
+}
+
+const Sprite* SpriteStore::find(int layer) const {
+  const bool known = layer >= 0 && static_cast<std::size_t>(layer) < sprites_.size() && alive_[layer];
+  return known ? &sprites_[layer] : nullptr;
+}
+
+void SpriteStore::drop(int layer) {
+  if (find(layer) == nullptr) return;
+  sprites_[layer] = Sprite();
+  alive_[layer] = false;
+}
+
+std::int64_t SpriteStore::bytes() const {
+  std::int64_t sum = 0;
+  for (const Sprite& sprite : sprites_) sum += sprite.bytes();
+  return sum;
+}
+
+}  // namespace talisman::chunker

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chunker/texture.h"
+
+#include "chunker/pixel.h"
+
+namespace talisman::chunker {
+namespace {
+
+MipLevel decode_texels(const layers::Texture& texture) {
+  MipLevel level{texture.width, texture.height, {}};
+  level.texels.resize(static_cast<std::size_t>(texture.width) * texture.height);
+  const std::uint8_t* byte = texture.rgba.data();
+  for (Float4& texel : level.texels) {
+    const float alpha = static_cast<float>(byte[3]) / 255.0f;
+    texel = Float4{linear_from_srgb(byte[0]), linear_from_srgb(byte[1]), linear_from_srgb(byte[2]), 1} *
+            splat(alpha);
+    byte += 4;
+  }
+  return level;
+}
+
+/// The source texels under one texel of a shorter axis, and how much of the first and last of them: a box of
+/// length from/to.
+struct Box {
+  int first, last;
+  float first_share, last_share;
+};
+
+std::vector<Box> boxes(int from, int to) {
+  std::vector<Box> result(to);
+  for (int i = 0; i < to; ++i) {
+    // In units of 1/to source texels everything is an integer.
+    const std::int64_t lo = static_cast<std::int64_t>(i) * from, hi = lo + from;
+    Box& box = result[i];
+    box.first = static_cast<int>(lo / to);
+    box.last = static_cast<int>((hi - 1) / to);
+    box.first_share =
+        static_cast<float>((box.first + 1) * static_cast<std::int64_t>(to) - lo) / static_cast<float>(to);
+    box.last_share =
+        static_cast<float>(hi - box.last * static_cast<std::int64_t>(to)) / static_cast<float>(to);
+    if (box.first == box.last)
+      box.first_share = box.last_share = static_cast<float>(from) / static_cast<float>(to);
+  }
+  return result;
+}
+
+Float4 box_sum(const Float4* texels, std::size_t stride, const Box& box) {
+  Float4 sum = texels[box.first * stride] * splat(box.first_share);
+  for (int i = box.first + 1; i < box.last; ++i) sum += texels[i * stride];
+  if (box.last > box.first) sum += texels[box.last * stride] * splat(box.last_share);
+  return sum;
+}
+
+MipLevel half_of(const MipLevel& fine) {
+  MipLevel coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
+  const auto columns = boxes(fine.width, coarse.width), rows = boxes(fine.height, coarse.height);
+  std::vector<Float4> narrow(static_cast<std::size_t>(coarse.width) * fine.height);
+  for (int y = 0; y < fine.height; ++y)
+    for (int x = 0; x < coarse.width; ++x)
+      narrow[static_cast<std::size_t>(y) * coarse.width + x] =
+          box_sum(fine.texels.data() + static_cast<std::size_t>(y) * fine.width, 1, columns[x]);
+  const float area = (static_cast<float>(fine.width) / static_cast<float>(coarse.width)) *
+                     (static_cast<float>(fine.height) / static_cast<float>(coarse.height));
+  coarse.texels.resize(static_cast<std::size_t>(coarse.width) * coarse.height);
+  for (int y = 0; y < coarse.height; ++y)
+    for (int x = 0; x < coarse.width; ++x)
+      coarse.texels[static_cast<std::size_t>(y) * coarse.width + x] =
+          box_sum(narrow.data() + x, coarse.width, rows[y]) * splat(1 / area);
+  return coarse;
+}
+
+/// A box of ones sums to one only up to rounding, but what is opaque must stay exactly opaque at every level.
+void snap_opaque(MipLevel& level) {
+  for (Float4& texel : level.texels)
+    if (texel[3] > 1 - 1e-5f) texel[3] = 1;
+}
+
+}  // namespace
+
+std::int64_t Pyramid::bytes() const {
+  std::int64_t sum = 0;
+  for (const MipLevel& level : levels) sum += static_cast<std::int64_t>(level.texels.size() * sizeof(Float4));
+  return sum;
+}
+
+Pyramid build_pyramid(const layers::Texture& texture) {
+  Pyramid pyramid;
+  if (texture.width <= 0 || texture.height <= 0) return pyramid;
+  if (texture.rgba.size() < static_cast<std::size_t>(texture.width) * texture.height * 4) return pyramid;
+  pyramid.levels.push_back(decode_texels(texture));
+  const auto& finest = pyramid.levels[0].texels;
+  pyramid.opaque = std::all_of(finest.begin(), finest.end(), [](const Float4& t) { return t[3] == 1; });
+  while (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1) {
+    pyramid.levels.push_back(half_of(pyramid.levels.back()));
+    snap_opaque(pyramid.levels.back());
+  }
+  return pyramid;
+}
+
+}  // namespace talisman::chunker

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which colour does a texture have under a pixel's footprint?
+///
+/// A pyramid holds the texture in premultiplied linear light, level 0 at full size and each next level at
+/// half of it (rounded down, at least 1) by an area-weighted box, so that sizes that are not powers of two do
+/// not drift. Filtering is trilinear:
+///
+///   λ = log₂ max(|∂(u,v)/∂x|, |∂(u,v)/∂y|)  in texels of level 0;   levels ⌊λ⌋ and ⌊λ⌋ + 1 are mixed by the
+///   fraction of λ
+///
+/// so no seam shows where the level changes. Magnified textures (λ ≤ 0) cost one bilinear sample instead of
+/// two. Coordinates repeat; texel (i, j) has its centre at ((i + 0.5) / width, (j + 0.5) / height).
+
+#include <algorithm>
+#include <cstdint>
+#include <vector>
+
+#include "chunker/float4.h"
+#include "chunker/power.h"
+#include "layers/scene.h"
+
+namespace talisman::chunker {
+
+struct MipLevel {
+  int width = 0, height = 0;
+  std::vector<Float4> texels;  ///< row by row
+};
+
+struct Pyramid {
+  std::vector<MipLevel> levels;  ///< empty: no texture
+  bool opaque = true;            ///< alpha is 1 in every texel of every level
+  bool empty() const { return levels.empty(); }
+  std::int64_t bytes() const;
+  /// The mean of the whole texture: what a surface without texture coordinates gets.
+  Float4 mean() const { return levels.back().texels[0]; }
+};
+
+/// Cost: O(texels). A texture without texels, or with fewer bytes than its size asks for, gives an empty
+/// pyramid.
+Pyramid build_pyramid(const layers::Texture& texture);
+
+/// Largest |u|, |v| that is kept as it is; beyond it float coordinates have lost their fraction anyway.
+inline constexpr float kLargestTextureCoordinate = 1e6f;
+
+/// ⌊x⌋ for |x| < 2³¹ without a library call.
+inline int floor_to_int(float x) {
+  const int i = static_cast<int>(x);
+  return i - (x < static_cast<float>(i) ? 1 : 0);
+}
+
+inline Float4 mix(Float4 a, Float4 b, float t) { return a + (b - a) * splat(t); }
+
+/// Position along one axis: the two texels and the share of the second.
+struct Tap {
+  int first, second;
+  float share;
+};
+
+inline Tap tap(float coordinate, int size) {
+  const float repeated = coordinate - static_cast<float>(floor_to_int(coordinate));
+  const float x = repeated * static_cast<float>(size) - 0.5f;
+  const int below = floor_to_int(x);
+  const int above = below + 1;
+  return {below < 0 ? below + size : below, above >= size ? above - size : above,
+          x - static_cast<float>(below)};
+}
+
+inline Float4 bilinear(const MipLevel& level, float u, float v) {
+  const Tap x = tap(u, level.width), y = tap(v, level.height);
+  const Float4* upper = level.texels.data() + static_cast<std::size_t>(y.first) * level.width;
+  const Float4* lower = level.texels.data() + static_cast<std::size_t>(y.second) * level.width;
+  return mix(mix(upper[x.first], upper[x.second], x.share), mix(lower[x.first], lower[x.second], x.share),
+             y.share);
+}
+
+/// `footprint` = λ as above, squared inside the logarithm: max of the two squared lengths in texels².
+inline Float4 trilinear(const Pyramid& pyramid, float u, float v, float footprint) {
+  if (!(footprint > 1)) return bilinear(pyramid.levels[0], u, v);
+  const float last = static_cast<float>(pyramid.levels.size() - 1);
+  const float lambda = std::min(0.5f * coarse_log2(footprint), last);
+  const int whole = static_cast<int>(lambda);
+  const float share = lambda - static_cast<float>(whole);
+  const Float4 fine = bilinear(pyramid.levels[whole], u, v);
+  return share > 0 ? mix(fine, bilinear(pyramid.levels[whole + 1], u, v), share) : fine;
+}
+
+}  // namespace talisman::chunker

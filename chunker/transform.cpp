@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chunker/transform.h"
+
+#include <algorithm>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "chunker/triangle.h"
+#include "layers/state.h"
+
+namespace talisman::chunker {
+namespace {
+
+using layers::Affine2;
+using layers::dmat3;
+using layers::dmat4;
+using layers::dvec3;
+using layers::dvec4;
+using layers::ivec2;
+
+/// No camera looks nearer than this; it keeps 1/w, and its gradients, inside the range of float.
+constexpr double kSmallestNear = 1e-12;
+
+Rows34 rows_of(const dmat4& m) {
+  Rows34 rows;
+  for (int r = 0; r < 3; ++r) rows.row[r] = {m[0][r], m[1][r], m[2][r], m[3][r]};
+  return rows;
+}
+
+/// Homogeneous sprite point (X, Y, w) from clip space: pixels by the display, then texels by the placement.
+Rows34 sprite_from_clip(ivec2 display_px, const Affine2& sprite_from_screen) {
+  const double half_w = display_px.x * 0.5, half_h = display_px.y * 0.5;
+  const Affine2& m = sprite_from_screen;
+  Rows34 rows;
+  rows.row[0] = {m.a * half_w, -m.b * half_h, 0, m.a * half_w + m.b * half_h + m.tx};
+  rows.row[1] = {m.c * half_w, -m.d * half_h, 0, m.c * half_w + m.d * half_h + m.ty};
+  rows.row[2] = {0, 0, 0, 1};
+  return rows;
+}
+
+/// Transforms direction n by the inverse transpose of m, times det(m): no division, so singular matrices are
+/// harmless.
+dmat3 cofactors(const dmat3& m) {
+  return {glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1])};
+}
+
+bool finite(const Affine2& m) {
+  return std::isfinite(m.a) && std::isfinite(m.b) && std::isfinite(m.c) && std::isfinite(m.d) &&
+         std::isfinite(m.tx) && std::isfinite(m.ty);
+}
+
+/// Nearest integer, halves up, without a library call; |v| < 2³¹.
+std::int32_t snap(double texels) {
+  const double v = texels * kSubpixel + 0.5;
+  const auto i = static_cast<std::int32_t>(v);
+  return i - (v < i ? 1 : 0);
+}
+
+float usable_coordinate(float v) {
+  if (!(v == v)) return 0;
+  return std::clamp(v, -kLargestTextureCoordinate, kLargestTextureCoordinate);
+}
+
+}  // namespace
+
+Rows34 operator*(const Rows34& outer, const dmat4& inner) {
+  Rows34 result;
+  for (int r = 0; r < 3; ++r) result.row[r] = outer.row[r] * inner;
+  return result;
+}
+
+std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, ivec2 display_px,
+                                      const layers::SpritePlacement& placement) {
+  if (placement.empty() || !finite(placement.screen_from_sprite)) return std::nullopt;
+  const auto sprite_from_screen = layers::inverse(placement.screen_from_sprite);
+  if (!sprite_from_screen || !finite(*sprite_from_screen)) return std::nullopt;
+  SpriteView view;
+  view.size_px = placement.size_px;
+  view.sprite_from_world =
+      sprite_from_clip(display_px, *sprite_from_screen) * layers::clip_from_world(frame.camera, display_px);
+  view.region.near_w = std::max(frame.camera.near_m, kSmallestNear);
+  view.region.center_px = {placement.size_px.x * 0.5, placement.size_px.y * 0.5};
+  view.eye = dvec3(frame.camera.world_from_camera[3]);
+  view.mirrored = placement.screen_from_sprite.determinant() < 0;
+  return view;
+}
+
+ProjectedVertex project(const SpriteView& view, const dvec3& p) {
+  ProjectedVertex v;
+  if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {
+    v.flags = kNotFinite;
+    return v;
+  }
+  const double w = p.z;
+  v.flags = static_cast<std::uint8_t>(
+      (p.x < 0 ? kLeftOfSprite : 0) | (p.x > view.size_px.x * w ? kRightOfSprite : 0) |
+      (p.y < 0 ? kAboveSprite : 0) | (p.y > view.size_px.y * w ? kBelowSprite : 0) |
+      (w < view.region.near_w ? kBeforeNear : 0));
+  if (v.flags & kBeforeNear) return v;
+  const double r = 1 / w, x = p.x * r, y = p.y * r;
+  v.depth = static_cast<float>(r);
+  if (std::abs(x - view.region.center_px.x) > kGuardBandPx ||
+      std::abs(y - view.region.center_px.y) > kGuardBandPx) {
+    v.flags |= kOutsideGuard;
+    return v;
+  }
+  v.x = snap(x);
+  v.y = snap(y);
+  return v;
+}
+
+PartVertices::PartVertices(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view)
+    : mesh_(&frame.scene->meshes[part.mesh]) {
+  const dmat4 world_from_source =
+      part.skin < 0 && part.node >= 0 ? frame.world_from_node[part.node] : dmat4(1.0);
+  if (part.skin >= 0) {
+    world_ = layers::world_positions(frame, part);
+    for (const dmat4& joint : layers::joint_palette(frame, part))
+      joint_normals_.push_back(cofactors(dmat3(joint)));
+  }
+  sprite_from_source_ = view.sprite_from_world * world_from_source;
+  eye_from_source_ = rows_of(world_from_source);
+  for (int r = 0; r < 3; ++r) eye_from_source_.row[r].w -= view.eye[r];
+  mirrored_ = glm::determinant(dmat3(world_from_source)) < 0;
+  normal_from_mesh_ = cofactors(dmat3(world_from_source)) * (mirrored_ ? -1.0 : 1.0);
+}
+
+Float4 PartVertices::world_normal(int i) const {
+  const dvec3 n(mesh_->normals[i]);
+  dvec3 world(0);
+  if (joint_normals_.empty() || mesh_->joints.empty()) {
+    world = normal_from_mesh_ * n;
+  } else {
+    for (int k = 0; k < 4; ++k)
+      world += static_cast<double>(mesh_->weights[i][k]) * (joint_normals_[mesh_->joints[i][k]] * n);
+  }
+  // Normalised in double first: cofactors of a scene of 1e-15 units would vanish in float.
+  const double length = glm::length(world);
+  return length > 0 && std::isfinite(length) ? float4(layers::vec3(world / length)) : splat(0);
+}
+
+ShadePoint PartVertices::shade_point(int i) const {
+  ShadePoint point;
+  point.position = float4(layers::vec3(eye_position(i)));
+  if (!mesh_->normals.empty()) point.normal = world_normal(i);
+  if (!mesh_->colors.empty()) point.vertex_color = float4(mesh_->colors[i], 1);
+  if (!mesh_->uvs.empty())
+    point.uv = Float4{usable_coordinate(mesh_->uvs[i].x), usable_coordinate(mesh_->uvs[i].y), 0, 0};
+  return point;
+}
+
+}  // namespace talisman::chunker

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The vertex stage: where are a part's vertices on the sprite, and what do they look like?
+///
+///   (X, Y, w) = sprite_from_screen · screen_from_clip · clip_from_world · world_from_node · p,      texel =
+///   (X/w, Y/w)
+///
+/// One 3×4 matrix per part, in double. Normals go by the cofactor matrix (the inverse transpose times the
+/// determinant), which exists even where a node is scaled to zero along an axis. Skinned parts take their
+/// world positions from layers::world_positions.
+
+#include <optional>
+#include <vector>
+
+#include "chunker/clip.h"
+#include "chunker/shade.h"
+
+namespace talisman::chunker {
+
+/// Rows of a 3×4 matrix.
+struct Rows34 {
+  layers::dvec4 row[3];
+  layers::dvec3 operator()(const layers::dvec3& p) const {
+    return {row[0].x * p.x + row[0].y * p.y + row[0].z * p.z + row[0].w,
+            row[1].x * p.x + row[1].y * p.y + row[1].z * p.z + row[1].w,
+            row[2].x * p.x + row[2].y * p.y + row[2].z * p.z + row[2].w};
+  }
+};
+
+Rows34 operator*(const Rows34& outer, const layers::dmat4& inner);
+
+/// How a frame is seen through a sprite.
+struct SpriteView {
+  layers::ivec2 size_px{0, 0};
+  Rows34 sprite_from_world;
+  ClipRegion region;
+  layers::dvec3 eye{0, 0, 0};
+  bool mirrored = false;  ///< the placement turns the picture over
+};
+
+/// Empty when the placement is: no texels, or a map that is singular or not finite.
+std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, layers::ivec2 display_px,
+                                      const layers::SpritePlacement& placement);
+
+/// Why a vertex may need more than drawing. A triangle whose corners share one of the first five lies wholly
+/// outside.
+enum VertexFlag : std::uint8_t {
+  kLeftOfSprite = 1,
+  kRightOfSprite = 2,
+  kAboveSprite = 4,
+  kBelowSprite = 8,
+  kBeforeNear = 16,
+  kOutsideGuard = 32,
+  kNotFinite = 64,
+};
+inline constexpr std::uint8_t kOutsideFlags =
+    kLeftOfSprite | kRightOfSprite | kAboveSprite | kBelowSprite | kBeforeNear;
+inline constexpr std::uint8_t kClipFlags = kBeforeNear | kOutsideGuard;
+
+struct ProjectedVertex {
+  std::int32_t x = 0, y = 0;  ///< 1/256 texel; valid without kClipFlags and kNotFinite
+  float depth = 0;            ///< 1/w
+  std::uint8_t flags = 0;
+};
+
+ProjectedVertex project(const SpriteView& view, const layers::dvec3& point);
+
+/// The vertices of one part.
+class PartVertices {
+ public:
+  PartVertices(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view);
+
+  int size() const { return static_cast<int>(mesh_->positions.size()); }
+  const layers::Mesh& mesh() const { return *mesh_; }
+  layers::dvec3 sprite_point(int i) const { return sprite_from_source_(source(i)); }
+  layers::dvec3 eye_position(int i) const {
+    return eye_from_source_(source(i));
+  }  ///< world axes, relative to the eye
+  ShadePoint shade_point(int i) const;
+  bool mirrored() const { return mirrored_; }  ///< the node turns the mesh inside out
+
+ private:
+  layers::dvec3 source(int i) const {
+    return world_.empty() ? layers::dvec3(mesh_->positions[i]) : world_[i];
+  }
+  Float4 world_normal(int i) const;
+
+  const layers::Mesh* mesh_;
+  std::vector<layers::dvec3> world_;          ///< skinned parts only
+  std::vector<layers::dmat3> joint_normals_;  ///< skinned parts only: cofactors of the palette
+  Rows34 sprite_from_source_, eye_from_source_;
+  layers::dmat3 normal_from_mesh_{1.0};
+  bool mirrored_ = false;
+};
+
+}  // namespace talisman::chunker

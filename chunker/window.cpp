@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "chunker/window.h"
+
+#include <algorithm>
+#include <cstring>
+
+namespace talisman::chunker {
+
+static_assert(kChunkSize == 32, "chunk_of() shifts by five");
+
+const Chunk* chunk_or_clear(const Sprite& sprite, int column, int row) {
+  const layers::ivec2 chunks = sprite.chunks();
+  const bool inside = column >= 0 && column < chunks.x && row >= 0 && row < chunks.y;
+  return inside ? sprite.chunk(column, row) : nullptr;
+}
+
+bool is_clear(const Sprite& sprite, const layers::RectI& texels) {
+  const layers::ivec2 chunks = sprite.chunks();
+  const int first_column = std::max(chunk_of(texels.x0), 0),
+            last_column = std::min(chunk_of(texels.x1 - 1), chunks.x - 1);
+  const int first_row = std::max(chunk_of(texels.y0), 0),
+            last_row = std::min(chunk_of(texels.y1 - 1), chunks.y - 1);
+  for (int row = first_row; row <= last_row; ++row) {
+    for (int column = first_column; column <= last_column; ++column) {
+      if (sprite.chunk(column, row)) return false;
+    }
+  }
+  return true;
+}
+
+bool Window::gather(const Sprite& sprite, const layers::RectI& texels) {
+  const int first_column = chunk_of(texels.x0), last_column = chunk_of(texels.x1);
+  const layers::RectI rows{0, texels.y0, 0, texels.y1 + 1};
+  const std::int64_t stride = (static_cast<std::int64_t>(last_column) - first_column + 1) * kChunkSize;
+  if (stride * rows.height() > kMaxTexels) return false;
+  stride_ = static_cast<int>(stride);
+  origin_ = {first_column * kChunkSize, rows.y0};
+  for (int row = chunk_of(rows.y0); row <= chunk_of(rows.y1 - 1); ++row) {
+    for (int column = first_column; column <= last_column; ++column) {
+      gather_chunk(chunk_or_clear(sprite, column, row), row, (column - first_column) * kChunkSize, rows);
+    }
+  }
+  return true;
+}
+
+void Window::gather_chunk(const Chunk* chunk, int chunk_row, int column, layers::RectI rows) {
+  constexpr std::size_t kRowBytes = kChunkSize * sizeof(Texel);
+  const int top = chunk_row * kChunkSize;
+  const int first = std::max(rows.y0, top), last = std::min(rows.y1, top + kChunkSize);
+  Texel* target = texels_.data() + static_cast<std::ptrdiff_t>(first - rows.y0) * stride_ + column;
+  for (int y = first; y < last; ++y, target += stride_) {
+    if (chunk) {
+      std::memcpy(target, chunk->texels + (y - top) * kChunkSize, kRowBytes);
+    } else {
+      std::fill_n(target, kChunkSize, Texel{});
+    }
+  }
+}
+
+}  // namespace talisman::chunker

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/effects.h"
+
+#include <algorithm>
+
+namespace talisman::layers {
+
+namespace {
+
+bool is_zero(const vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+
+bool has_lights(const Scene& scene) { return !scene.lights.empty(); }
+
+/// Why this part calls for the effect; empty if it does not.
+std::string call_of(const Scene& scene, const Part& part, Effect effect) {
+  const Material* material = part.material >= 0 ? &scene.materials[part.material] : nullptr;
+  const std::string material_name = material ? "material '" + material->name + "'" : "";
+  const Texture* texture = material && material->texture >= 0 ? &scene.textures[material->texture] : nullptr;
+  switch (effect) {
+    case Effect::Texture:
+    case Effect::MipFilter:
+      if (texture) return material_name + " has texture '" + texture->name + "'";
+      break;
+    case Effect::Lighting:
+      if (material && !material->unlit && has_lights(scene)) return material_name + " is lit";
+      break;
+    case Effect::SpecularHighlight:
+      if (material && !material->unlit && has_lights(scene) && !is_zero(material->specular))
+        return material_name + " has specular > 0";
+      break;
+    case Effect::Translucency:
+      if (material && material->opacity < 1) return material_name + " has opacity < 1";
+      if (texture && texture->has_alpha) return "texture '" + texture->name + "' has alpha";
+      break;
+    case Effect::Skinning:
+      if (part.skin >= 0) return "part '" + part.name + "' has a skin";
+      break;
+    case Effect::LayerResolution:
+      break;  // asked for by layers, not by parts
+  }
+  return {};
+}
+
+std::string call_of(const Scene& scene, const Layer& layer, Effect effect) {
+  if (effect == Effect::LayerResolution)
+    return layer.preferences.resolution_scale != 1 ? "layer '" + layer.name + "' has its own resolution" : "";
+  for (const int part : layer.parts)
+    if (std::string why = call_of(scene, scene.parts[part], effect); !why.empty()) return why;
+  return {};
+}
+
+std::string why_not(const Scene& scene, Effect effect) {
+  switch (effect) {
+    case Effect::Texture:
+    case Effect::MipFilter:
+      return "no material has a texture";
+    case Effect::Lighting:
+      return has_lights(scene) ? "no material is lit" : "the scene has no light";
+    case Effect::SpecularHighlight:
+      return "no lit material has specular > 0";
+    case Effect::Translucency:
+      return "every material is opaque";
+    case Effect::Skinning:
+      return "no part has a skin";
+    case Effect::LayerResolution:
+      return "every layer has the display's resolution";
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string_view name(Effect effect) {
+  switch (effect) {
+    case Effect::Texture:
+      return "texture";
+    case Effect::MipFilter:
+      return "mip_filter";
+    case Effect::Lighting:
+      return "lighting";
+    case Effect::SpecularHighlight:
+      return "specular_highlight";
+    case Effect::Translucency:
+      return "translucency";
+    case Effect::Skinning:
+      return "skinning";
+    case Effect::LayerResolution:
+      return "layer_resolution";
+  }
+  return "?";
+}
+
+std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers) {
+  std::vector<EffectCall> table;
+  for (const Effect effect : kAllEffects) {
+    EffectCall call{effect, false, why_not(scene, effect), {}};
+    for (const Layer& layer : layers) {
+      std::string why = call_of(scene, layer, effect);
+      if (why.empty()) continue;
+      if (!call.called) call.why = std::move(why);
+      call.called = true;
+      call.layers.push_back(layer.id);
+    }
+    table.push_back(std::move(call));
+  }
+  return table;
+}
+
+}  // namespace talisman::layers

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which effects does a scene call for, and why?
+///
+/// What a scene does not use costs nothing: no pass, no memory, no counter. This table is computed from the
+/// scene and its layers alone, before anything is drawn, and names for every effect the element that calls
+/// for it or that none does.
+
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "layers/layer.h"
+
+namespace talisman::layers {
+
+enum class Effect {
+  Texture,            ///< some drawn part has a textured material
+  MipFilter,          ///< the same textures, filtered when minified
+  Lighting,           ///< some drawn part is lit: normals and lights are evaluated
+  SpecularHighlight,  ///< some lit material has specular > 0
+  Translucency,       ///< opacity < 1 or a texture with alpha
+  Skinning,           ///< some drawn part has a skin
+  LayerResolution,    ///< some layer asks for a resolution other than the display's
+};
+inline constexpr std::array kAllEffects = {Effect::Texture,           Effect::MipFilter,    Effect::Lighting,
+                                           Effect::SpecularHighlight, Effect::Translucency, Effect::Skinning,
+                                           Effect::LayerResolution};
+std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
+
+struct EffectCall {
+  Effect effect = Effect::Texture;
+  bool called = false;
+  std::string why;          ///< "material 'hull' has texture 'gl-14.tga'" or "no material has a texture"
+  std::vector<int> layers;  ///< ids of the layers that use it, ascending
+};
+
+/// One entry per effect, in the order of kAllEffects. Parts that no layer takes do not count. Cost: O(parts).
+std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers);
+
+}  // namespace talisman::layers

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The policies, one file each. Each answers for one layer that is in view and has been rendered before: draw
+/// it again, or show the old sprite? What is common to all (layers out of view, first appearances) is decided
+/// in plan.cpp.
+
+#include <string>
+
+#include "regulator/plan.h"
+
+namespace talisman::regulator {
+
+LayerDecision decide_every_frame(const LayerAssessment& layer, std::string reason);  // direct, reference
+LayerDecision decide_hold(int frame, const LayerAssessment& layer, const RegulatorOptions& options);
+LayerDecision decide_interpolate(int frame, const LayerAssessment& layer, const RegulatorOptions& options);
+LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options);
+
+/// A fresh sprite; shown without a warp and without error.
+LayerDecision rerender(const LayerAssessment& layer, std::string reason);
+/// The old sprite, carried by the fitted warp.
+LayerDecision reuse(const LayerAssessment& layer, std::string reason);
+/// The old sprite, left where it was.
+LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason);
+
+/// "geometric 4.7 > 4 px" (relation is one of ">" "<=" "<" ">=").
+std::string comparison(const char* what, double value, const char* relation, double limit,
+                       const char* unit = "");
+
+/// Fewer matched points than this say too little about the motion to trust a small error.
+inline constexpr int kFewestMatchedPoints = 3;
+
+}  // namespace talisman::regulator

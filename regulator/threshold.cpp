@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "regulator/policies.h"
+
+namespace talisman::regulator {
+
+namespace {
+
+/// The first fiducial beyond its threshold, in words and numbers, or an empty string.
+/// The order is that of [LS97 5]: geometry first, because it is the one that users set.
+std::string first_violation(const LayerAssessment& layer, const RegulatorOptions& o) {
+  const fiducials::Report& f = layer.fiducials;
+  if (!layer.fitted.usable()) return "fit: " + std::string(warp::name(layer.fitted.status));
+  if (layer.matched_points < kFewestMatchedPoints)
+    return comparison("matched points", layer.matched_points, "<", kFewestMatchedPoints);
+  if (!(f.geometric.px <= o.geometric_px))
+    return comparison("geometric", f.geometric.px, ">", o.geometric_px, "px");
+  if (o.magnification > 0 && !(f.sampling.magnification <= o.magnification))
+    return comparison("sampling: magnification", f.sampling.magnification, ">", o.magnification);
+  if (o.minification > 0 && !(f.sampling.minification >= o.minification))
+    return comparison("sampling: minification", f.sampling.minification, "<", o.minification);
+  if (o.anisotropy > 0 && !(f.sampling.anisotropy <= o.anisotropy))
+    return comparison("sampling: anisotropy", f.sampling.anisotropy, ">", o.anisotropy);
+  if (o.uncovered_px >= 0 && f.visibility.computed && !(f.visibility.uncovered_px <= o.uncovered_px))
+    return comparison("visibility: uncovered edge", f.visibility.uncovered_px, ">", o.uncovered_px, "px");
+  return {};
+}
+
+bool due_by_minimum_rate(const LayerAssessment& layer) {
+  const double rate = layer.preferences.min_update_rate;
+  return rate > 0 && layer.frames_since_render * rate >= 1;
+}
+
+bool barred_by_maximum_rate(const LayerAssessment& layer) {
+  return layer.frames_since_render * layer.preferences.max_update_rate < 1;
+}
+
+}  // namespace
+
+/// Renders a layer again when a fiducial says that its warped sprite is no longer good enough: the threshold
+/// regulator of [LS97 6]. A threshold of 0 px reuses only what would be drawn identically, so that the
+/// pictures equal `reference`.
+LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options) {
+  if (layer.identical) return reuse(layer, "unchanged");
+  std::string violation =
+      options.geometric_px > 0 ? first_violation(layer, options) : "changed, geometric threshold 0 px";
+  if (violation.empty() && due_by_minimum_rate(layer))
+    violation = comparison("min_update_rate: frames since render", layer.frames_since_render,
+                           ">=", 1 / layer.preferences.min_update_rate);
+  if (violation.empty())
+    return reuse(layer,
+                 comparison("geometric", layer.fiducials.geometric.px, "<=", options.geometric_px, "px"));
+  const bool fit_is_sound = layer.fitted.usable() && layer.matched_points >= kFewestMatchedPoints;
+  if (fit_is_sound && barred_by_maximum_rate(layer))
+    return reuse(layer, "deferred: max_update_rate; " + violation);
+  return rerender(layer, violation);
+}
+
+}  // namespace talisman::regulator

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tool: one program, a few commands. Everything it does is in the libraries; here are only the words.
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <oneapi/tbb/global_control.h>
+
+#include "sequences/diff.h"
+#include "sequences/inspect.h"
+#include "sequences/options.h"
+
+namespace {
+
+using namespace talisman::sequences;
+
+std::atomic<bool> stop_requested = false;
+static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
+
+extern "C" void on_stop_signal(int) { stop_requested = true; }
+
+void add_run_options(CLI::App& command, CommandLine& line) {
+  command
+      .add_option("sequence", line.sequence, "name of a sequence, path of its YAML file, or path of a model")
+      ->required();
+  command.add_option("--out", line.out, "result folder (out/<name>; plans: out/<name>-plan)");
+  command.add_option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run");
+  command.add_option("--policy", line.policy, "direct, reference, hold, interpolate or threshold");
+  command.add_option("--geometric-px", line.geometric_px,
+                     "threshold of the geometric fiducial, pixels; 0: reuse only what is identical");
+  command.add_option("--hold", line.hold, "N of the policies hold and interpolate");
+  command.add_option("--warp", line.warp,
+                     "warp curve: trn trni iso isoi so soi aff affi per peri per2 per2i pers pers2");
+  command.add_option("--size", line.size, "display, WxH pixels");
+  command.add_option("--bound", line.bound, "characteristic polyhedron: box8, dop14 or dop26");
+  command.add_option("--expected-reuse", line.expected_reuse,
+                     "frames for which clipped sprites are enlarged");
+  command.add_option("--threads", line.threads,
+                     "worker threads; 0: all cores. The bytes do not depend on it");
+  command.add_option("--progress", line.progress, "auto, bar, plain or none");
+}
+
+void add_picture_options(CLI::App& command, CommandLine& line) {
+  command.add_option("--format", line.format, "png, exr or none");
+  command.add_option("--shading", line.shading, "flat, gouraud or phong");
+  command.add_option("--resolution", line.resolution, "sprite texels per display pixel, each axis");
+  command.add_flag("--video", line.video, "also write video.mp4");
+  command.add_flag("--overlay", line.overlay, "draw each sprite's outline, coloured by age");
+  command.add_flag("--quality", line.quality,
+                   "PSNR, SSIM and FLIP of each frame against reference and direct (slow)");
+  command.add_flag("--resume", line.resume, "continue a run that was stopped");
+}
+
+int run_sequence(const CommandLine& line, bool plan_only) {
+  const Sequence sequence = load_sequence(line.sequence);
+  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  const ResolvedRun resolved = resolve(line, sequence, plan_only);
+  std::unique_ptr<oneapi::tbb::global_control> threads;
+  if (line.threads > 0)
+    threads = std::make_unique<oneapi::tbb::global_control>(
+        oneapi::tbb::global_control::max_allowed_parallelism, line.threads);
+  std::signal(SIGINT, on_stop_signal);
+  std::signal(SIGTERM, on_stop_signal);
+  const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop_requested);
+  if (!outcome.complete) {
+    std::fprintf(stderr, "error: stopped after %zu frames; the same command with --resume continues\n",
+                 outcome.summary.frames.size());
+    return kPartialResult;
+  }
+  if (outcome.frames_kept > 0)
+    std::printf("kept %d complete frames of an earlier run\n", outcome.frames_kept);
+  std::printf("%s\nresults in %s\n", table_of(outcome.summary).c_str(), resolved.options.out.c_str());
+  return kSuccess;
+}
+
+int inspect_sequence(const std::string& name, bool json, bool profile) {
+  if (profile) std::fputs(profile_text().c_str(), stdout);
+  if (name.empty()) {
+    if (profile) return kSuccess;
+    throw InputError("inspect needs a SEQUENCE, a MODEL or --profile");
+  }
+  const Sequence sequence = load_sequence(name);
+  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  std::fputs((json ? inspection_json(sequence) : inspection_text(sequence)).c_str(), stdout);
+  return kSuccess;
+}
+
+struct Commands {
+  CLI::App app{"talisman: a simulator of layered sprite rendering"};
+  CommandLine line;
+  std::string inspected;
+  bool json = false, profile = false;
+  DiffOptions diff;
+  int exit_code = kSuccess;
+
+  Commands() {
+    app.require_subcommand(1);
+    CLI::App* render = app.add_subcommand("render", "draw a sequence or a model");
+    add_run_options(*render, line);
+    add_picture_options(*render, line);
+    render->callback([this] { exit_code = run_sequence(line, false); });
+
+    CLI::App* plan = app.add_subcommand("plan", "the same decisions and costs, without pixels");
+    add_run_options(*plan, line);
+    plan->callback([this] { exit_code = run_sequence(line, true); });
+
+    CLI::App* inspect =
+        app.add_subcommand("inspect", "layers, polygons, memory and the effects called for, with reasons");
+    inspect->add_option("sequence", inspected,
+                        "name of a sequence, path of its YAML file, or path of a model");
+    inspect->add_flag("--json", json, "print JSON");
+    inspect->add_flag("--profile", profile, "print the hardware profile with the source of each number");
+    inspect->callback([this] { exit_code = inspect_sequence(inspected, json, profile); });
+
+    CLI::App* diff_command = app.add_subcommand("diff", "image error of two frames or folders of frames");
+    diff_command->add_option("a", diff.a, "frame or folder under test")->required();
+    diff_command->add_option("b", diff.b, "frame or folder of the truth")->required();
+    diff_command->add_flag("--json", diff.json, "print JSON");
+    diff_command->add_option("--map", diff.map_dir, "write FLIP error maps into this folder");
+    diff_command->callback([this] { exit_code = run_diff(diff, std::cout); });
+  }
+};
+
+int fail(const std::exception& error, int code) {
+  std::fprintf(stderr, "error: %s\n", error.what());
+  return code;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) try {
+  std::signal(SIGPIPE, SIG_IGN);
+  Commands commands;
+  try {
+    commands.app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return commands.app.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return fail(error, kBadInput);
+  }
+  return commands.exit_code;
+} catch (const InputError& error) {
+  return fail(error, kBadInput);
+} catch (const PartialResult& error) {
+  return fail(error, kPartialResult);
+} catch (const std::exception& error) {
+  return fail(error, kFailed);
+}

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The command line of `render` and `plan`, as it was typed, and how it overrides a sequence's own settings.
+/// The order of options never matters.
+
+#include <optional>
+#include <string>
+
+#include "sequences/run.h"
+
+namespace talisman::sequences {
+
+/// Every option is empty where it was not given.
+struct CommandLine {
+  std::string sequence;
+  std::string out;     ///< empty: out/<name>, for plans out/<name>-plan
+  std::string frames;  ///< "A-B", "A" or empty: all; inclusive
+  std::string size;    ///< "WxH"
+  std::string policy, warp, bound, shading, format = "png", progress = "auto";
+  std::optional<double> geometric_px, expected_reuse, resolution;
+  std::optional<int> hold;
+  int threads = 0;  ///< 0: all cores
+  bool video = false, overlay = false, quality = false, resume = false;
+};
+
+struct ResolvedRun {
+  Settings settings;
+  RunOptions options;
+};
+
+/// Checks every value and joins it with the sequence's defaults. Throws InputError that names option, value
+/// and rule.
+ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only);
+
+}  // namespace talisman::sequences

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+// The tool as a user meets it: exit codes, one clear error line, no half-written results, runs that can be
+// continued.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace talisman {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string output;  ///< stdout and stderr
+};
+
+class Tool : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ =
+        fs::temp_directory_path() / ("talisman_tool_test_" + std::to_string(getpid()) + "_" + unique_name());
+    fs::create_directories(folder_);
+    write("cube.obj", kCube);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string unique_name() { return ::testing::UnitTest::GetInstance()->current_test_info()->name(); }
+  static std::string tool() {
+    return (fs::read_symlink("/proc/self/exe").parent_path() / "talisman").string();
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+  }
+  std::string read(const std::string& name) const {
+    std::ifstream in(folder_ / name, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  /// Runs "cd FOLDER && PREFIX talisman ARGUMENTS".
+  Outcome run(const std::string& arguments, const std::string& prefix = "") const {
+    const std::string command =
+        "cd '" + folder_.string() + "' && " + prefix + " '" + tool() + "' " + arguments + " 2>&1";
+    std::FILE* pipe = popen(command.c_str(), "r");
+    Outcome outcome;
+    char buffer[4096];
+    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
+      outcome.output.append(buffer, n);
+    const int status = pclose(pipe);
+    outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+    return outcome;
+  }
+
+  /// Expects exit code 2 and exactly one error line that holds all of `parts`.
+  void expect_bad_input(const std::string& arguments, const std::vector<std::string>& parts) const {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.output;
+    EXPECT_EQ(outcome.output.rfind("error: ", 0), 0u) << outcome.output;
+    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+    for (const std::string& part : parts) EXPECT_THAT(outcome.output, HasSubstr(part)) << arguments;
+  }
+
+  std::set<std::string> files_in(const std::string& name) const {
+    std::set<std::string> names;
+    if (fs::exists(folder_ / name))
+      for (const auto& entry : fs::directory_iterator(folder_ / name))
+        names.insert(entry.path().filename().string());
+    return names;
+  }
+
+  std::vector<std::string> frame_hashes(const std::string& out) const {
+    std::vector<std::string> hashes;
+    std::ifstream in(folder_ / out / "frames.jsonl");
+    for (std::string line; std::getline(in, line);)
+      hashes.push_back(nlohmann::json::parse(line)["frame_hash"]);
+    return hashes;
+  }
+
+  static constexpr const char* kCube =
+      "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
+      "f 5 6 7 8\nf 2 1 4 3\nf 6 2 3 7\nf 1 5 8 4\nf 8 7 3 4\nf 1 2 6 5\n";
+
+  fs::path folder_;
+};
+
+TEST_F(Tool, RendersABareModel) {
+  const Outcome outcome = run("render cube.obj --out o --frames 0-4 --size 64x48 --progress none");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_EQ(files_in("o/frames"),
+            (std::set<std::string>{"0000.png", "0001.png", "0002.png", "0003.png", "0004.png"}));
+  const nlohmann::json summary = nlohmann::json::parse(read("o/summary.json"));
+  EXPECT_EQ(summary["frames"], 5);
+  EXPECT_EQ(summary["layers"].size(), 1u);
+  EXPECT_EQ(summary["layers"][0]["polygons"], 12);
+  EXPECT_THAT(read("o/summary.json"), Not(HasSubstr("nan")));
+}
+
+TEST_F(Tool, PlanMakesTheDecisionsOfRender) {
+  ASSERT_EQ(run("render cube.obj --out r --frames 0-19 --size 64x48 --progress none --format none").exit_code,
+            0);
+  ASSERT_EQ(run("plan cube.obj --out p --frames 0-19 --size 64x48 --progress none").exit_code, 0);
+  EXPECT_EQ(read("p/decisions.jsonl"), read("r/decisions.jsonl"));
+  EXPECT_FALSE(fs::exists(folder_ / "p/frames")) << "a plan draws nothing";
+}
+
+TEST_F(Tool, FramesOfARangeAreThoseOfTheFullRun) {
+  ASSERT_EQ(run("render cube.obj --out all --frames 0-19 --size 64x48 --progress none").exit_code, 0);
+  ASSERT_EQ(run("render cube.obj --out part --frames 13-15 --size 64x48 --progress none").exit_code, 0);
+  for (const char* frame : {"0013.png", "0014.png", "0015.png"})
+    EXPECT_EQ(read(std::string("part/frames/") + frame), read(std::string("all/frames/") + frame)) << frame;
+  EXPECT_EQ(files_in("part/frames").size(), 3u);
+}
+
+TEST_F(Tool, KilledRunContinuesWithTheSameBytes) {
+  const std::string options = "render cube.obj --frames 0-99 --size 640x480 --progress none --out ";
+  ASSERT_EQ(run(options + "whole").exit_code, 0);
+  // SIGKILL in the middle: nothing can be tidied up.
+  run(options + "cut", "timeout -s KILL 0.6");
+  const std::size_t done = files_in("cut/frames").size();
+  EXPECT_FALSE(fs::exists(folder_ / "cut/summary.json")) << "the run was meant to be killed before its end";
+  EXPECT_LT(done, 100u);
+  const Outcome resumed = run(options + "cut --resume");
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.output;
+  EXPECT_EQ(frame_hashes("cut"), frame_hashes("whole"));
+  EXPECT_EQ(read("cut/decisions.jsonl"), read("whole/decisions.jsonl"));
+  for (const std::string& frame : files_in("whole/frames"))
+    EXPECT_EQ(read("cut/frames/" + frame), read("whole/frames/" + frame));
+  EXPECT_EQ(files_in("cut/frames").size(), 100u) << "no temporary file stays";
+}
+
+TEST_F(Tool, InterruptedRunSaysSoAndExitsWithThree) {
+  const Outcome outcome = run("render cube.obj --frames 0-99 --size 640x480 --progress none --out o",
+                              "timeout -s INT --preserve-status 0.6");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("--resume"));
+}
+
+TEST_F(Tool, ResumeWithOtherOptionsIsRefused) {
+  const std::string options = "render cube.obj --frames 0-3 --size 64x48 --progress none --out o";
+  ASSERT_EQ(run(options).exit_code, 0);
+  expect_bad_input(options + " --geometric-px 8 --resume", {"geometric_px was", "is 8"});
+}
+
+TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
+  expect_bad_input("render nothing.obj", {"nothing.obj"});
+  expect_bad_input("render no_such_sequence", {"no_such_sequence"});
+  expect_bad_input("render cube.obj --policy often", {"--policy", "often", "threshold"});
+  expect_bad_input("render cube.obj --geometric-px -1", {"geometric_px", "-1", "at least 0"});
+  expect_bad_input("render cube.obj --geometric-px nan", {"geometric_px", "at least 0"});
+  expect_bad_input("render cube.obj --warp bend", {"--warp", "bend"});
+  expect_bad_input("render cube.obj --size 0x100", {"--size", "0x100"});
+  expect_bad_input("render cube.obj --size -5x100", {"--size"});
+  expect_bad_input("render cube.obj --size 64", {"--size", "WxH"});
+  expect_bad_input("render cube.obj --frames 5-2", {"--frames", "5-2"});
+  expect_bad_input("render cube.obj --frames 0-999999", {"--frames", "0 <= A <= B"});
+  expect_bad_input("render cube.obj --hold 0", {"hold_frames", "at least 1"});
+  expect_bad_input("render cube.obj --format gif", {"--format", "gif", "png"});
+  expect_bad_input("render cube.obj --format none --video", {"--video"});
+  expect_bad_input("render cube.obj --threads -1", {"--threads"});
+  expect_bad_input("render cube.obj --no-such-option", {"no-such-option"});
+}
+
+TEST_F(Tool, BadModelsAndSequencesExitWithTwo) {
+  write("empty.obj", "");
+  expect_bad_input("render empty.obj", {"empty.obj"});
+  write("nan.obj", "v nan 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  expect_bad_input("render nan.obj", {"nan.obj"});
+  write("cut.glb", "glTF\x02");
+  expect_bad_input("render cut.glb", {"cut.glb"});
+  write("bad.yaml", "name: bad\nframes: 0\n");
+  expect_bad_input("render bad.yaml", {"bad.yaml:2", "frames"});
+  write("typo.yaml", "name: typo\nframez: 10\n");
+  expect_bad_input("render typo.yaml", {"typo.yaml:2", "framez"});
+}
+
+TEST_F(Tool, OutputFolderThatCannotBeMadeIsOneClearLine) {
+  write("file", "in the way");
+  const Outcome outcome = run("render cube.obj --frames 0 --progress none --out file/sub");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("error: "), HasSubstr("file/sub")));
+}
+
+TEST_F(Tool, DiskThatFillsUpLeavesNoHalfFile) {
+  // A file-size limit stands in for a full disk: the first picture does not fit into 2 blocks of 512 bytes.
+  const Outcome outcome = run("render cube.obj --frames 0-3 --size 640x480 --progress none --out o",
+                              "trap '' XFSZ; ulimit -f 2;");
+  EXPECT_EQ(outcome.exit_code, 1) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("error: "));
+  EXPECT_EQ(files_in("o/frames").size(), 0u) << "neither a final name nor a temporary one";
+  EXPECT_FALSE(fs::exists(folder_ / "o/summary.json"));
+}
+
+TEST_F(Tool, HelpExitsWithZeroAndNamesTheCommands) {
+  const Outcome outcome = run("--help");
+  EXPECT_EQ(outcome.exit_code, 0);
+  for (const char* command : {"render", "plan", "inspect", "diff"})
+    EXPECT_THAT(outcome.output, HasSubstr(command));
+  EXPECT_EQ(run("").exit_code, 2) << "no command";
+}
+
+TEST_F(Tool, InspectPrintsTheEffectTable) {
+  const Outcome outcome = run("inspect cube.obj --json");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  const nlohmann::json json = nlohmann::json::parse(outcome.output);
+  EXPECT_EQ(json["layers"][0]["polygons"], 12);
+  EXPECT_EQ(json["effects"]["texture"]["called"], false);
+  EXPECT_EQ(json["effects"]["texture"]["why"], "no material has a texture");
+}
+
+TEST_F(Tool, DiffOfEqualFoldersIsIdentical) {
+  ASSERT_EQ(run("render cube.obj --out a --frames 0-2 --size 64x48 --progress none").exit_code, 0);
+  ASSERT_EQ(run("render cube.obj --out b --frames 0-2 --size 64x48 --progress none --threads 1").exit_code,
+            0);
+  const Outcome outcome = run("diff a/frames b/frames");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("identical"));
+}
+
+}  // namespace
+}  // namespace talisman

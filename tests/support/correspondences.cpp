@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/support/correspondences.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+namespace talisman::tests {
+namespace {
+
+constexpr double kPi = 3.14159265358979323846;
+constexpr double kDisplayPx = 1024;
+
+dvec2 project(dvec3 camera_point) {
+  static const double focal = kDisplayPx / 2 / std::tan(kPi / 8);
+  const double w = -camera_point.z;
+  return {kDisplayPx / 2 + focal * camera_point.x / w, kDisplayPx / 2 - focal * camera_point.y / w};
+}
+
+/// Point i of the unit box -1 … 1: 27 places of the lattice {-1, 0, 1}³ by rank, the centre left out; then
+/// random ones inside.
+dvec3 box_point(int i, Random& random) {
+  static const std::vector<dvec3> lattice = [] {
+    std::vector<dvec3> points;
+    for (int zeros = 0; zeros < 3; ++zeros)
+      for (int k = 0; k < 27; ++k) {
+        const dvec3 p{k % 3 - 1.0, k / 3 % 3 - 1.0, k / 9 - 1.0};
+        if ((p.x == 0) + (p.y == 0) + (p.z == 0) == (zeros == 0 ? 0 : zeros == 1 ? 2 : 1))
+          points.push_back(p);
+      }
+    return points;
+  }();
+  if (i < static_cast<int>(lattice.size())) return lattice[i];
+  const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+  return {x, y, z};
+}
+
+dvec3 direction(Random& random) {
+  for (;;) {
+    const double x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+    const dvec3 v{x, y, z};
+    const double length = glm::length(v);
+    if (length > 0.1 && length <= 1) return v / length;
+  }
+}
+
+/// Turned about a random axis; angle and axis are drawn one after the other, because the order of arguments
+/// is not fixed.
+layers::dmat4 random_turn(Random& random, double least_rad, double most_rad) {
+  const double angle_rad = random.uniform(least_rad, most_rad);
+  return glm::rotate(layers::dmat4(1.0), angle_rad, direction(random));
+}
+
+std::vector<dvec2> random_points(Random& random, int count, double half_side_px, dvec2 centre) {
+  std::vector<dvec2> points(count);
+  for (auto& p : points) p = centre + random.in_square(half_side_px);
+  return points;
+}
+
+Pairs image_of(std::vector<dvec2> then_px, const std::function<dvec2(dvec2)>& map) {
+  Pairs pairs{std::move(then_px), {}};
+  for (const dvec2& p : pairs.then_px) pairs.now_px.push_back(map(p));
+  return pairs;
+}
+
+}  // namespace
+
+std::uint64_t Random::bits() {
+  std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ull);
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return z ^ (z >> 31);
+}
+double Random::uniform(double lo, double hi) {
+  return lo + (hi - lo) * (static_cast<double>(bits() >> 11) * 0x1p-53);
+}
+int Random::integer(int lo, int hi) {
+  return lo + static_cast<int>(bits() % (static_cast<std::uint64_t>(hi - lo) + 1));
+}
+double Random::log_uniform(double lo, double hi) { return std::exp(uniform(std::log(lo), std::log(hi))); }
+dvec2 Random::in_square(double half_side) {
+  const double x =
+      uniform(-half_side, half_side);  // one after the other: the order of arguments is not fixed
+  return {x, uniform(-half_side, half_side)};
+}
+
+Pairs moving_box(std::uint64_t seed, int points) {
+  Random random(seed * 1000003 + 17);
+  const double distance = random.log_uniform(1, 100);
+  const dvec3 half{distance * random.uniform(0.02, 0.15), distance * random.uniform(0.02, 0.15),
+                   distance * random.uniform(0.02, 0.15)};
+  const dvec3 centre = dvec3{random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), -1} * distance;
+  const auto pose = random_turn(random, 0, kPi);
+  const auto step = random_turn(random, 0.2 * kPi / 180, 3 * kPi / 180);
+  const dvec3 move =
+      dvec3{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)} * distance;
+  Pairs pairs;
+  for (int i = 0; i < points; ++i) {
+    const layers::dvec4 local = pose * layers::dvec4(box_point(i, random) * half, 1);
+    const layers::dvec4 turned = step * local;
+    pairs.then_px.push_back(project(centre + dvec3(local)));
+    pairs.now_px.push_back(project(centre + move + dvec3(turned)));
+  }
+  return pairs;
+}
+
+Pairs exact_affine(std::uint64_t seed, int points, const Affine2& map, double half_side_px, dvec2 centre) {
+  Random random(seed);
+  return image_of(random_points(random, points, half_side_px, centre), map);
+}
+
+Pairs exact_perspective(std::uint64_t seed, int points, const dmat3& map, double half_side_px, dvec2 centre) {
+  Random random(seed);
+  return image_of(random_points(random, points, half_side_px, centre),
+                  [&](dvec2 p) { return through(map, p); });
+}
+
+Pairs with_noise(Pairs pairs, std::uint64_t seed, double amount_px) {
+  Random random(seed);
+  for (auto& p : pairs.now_px) p += random.in_square(amount_px);
+  return pairs;
+}
+
+dvec2 through(const dmat3& map, dvec2 p) {
+  const dvec3 h = map * dvec3(p, 1);
+  return {h.x / h.z, h.y / h.z};
+}
+
+Affine2 gentle_affine(std::uint64_t seed) {
+  Random random(seed ^ 0xa5a5);
+  const double angle = random.uniform(-0.3, 0.3), sx = random.uniform(0.8, 1.25),
+               sy = random.uniform(0.8, 1.25);
+  const double shear = random.uniform(-0.1, 0.1), c = std::cos(angle), s = std::sin(angle);
+  Affine2 map{c * sx, c * shear - s * sy, 0, s * sx, s * shear + c * sy, 0};
+  const dvec2 centre{512, 512}, offset = centre + random.in_square(30) - map.linear(centre);
+  map.tx = offset.x;
+  map.ty = offset.y;
+  return map;
+}
+
+dmat3 gentle_perspective(std::uint64_t seed) {
+  Random random(seed ^ 0x5a5a);
+  const double g = random.uniform(-3e-4, 3e-4), h = random.uniform(-3e-4, 3e-4);
+  dmat3 map = layers::to_mat3(gentle_affine(seed));
+  map[0].z = g;
+  map[1].z = h;
+  map[2].z = 1 - 512 * (g + h);  // denominator 1 at the centre
+  return map;
+}
+
+Pairs near_collinear(std::uint64_t seed, int points, double thickness, double angle_rad, double length_px) {
+  Random random(seed);
+  const dvec2 along{std::cos(angle_rad), std::sin(angle_rad)}, across{-along.y, along.x};
+  Pairs pairs;
+  for (int i = 0; i < points; ++i) {
+    const double t = length_px * (i / std::fmax(1.0, points - 1.0) - 0.5);
+    const double off = length_px * thickness * random.uniform(-1, 1);
+    pairs.then_px.push_back(dvec2{512, 512} + t * along + off * across);
+    pairs.now_px.push_back(dvec2{530, 505} + 1.1 * t * (along + 0.05 * across) + random.in_square(1));
+  }
+  return pairs;
+}
+
+namespace {
+
+void add_few_points(std::vector<HardCase>& cases) {
+  for (int n = 0; n <= 4; ++n)
+    cases.push_back(
+        {std::to_string(n) + " points", with_noise(exact_affine(n + 1, n, gentle_affine(1)), 3, 5)});
+}
+
+void add_coincident(std::vector<HardCase>& cases) {
+  cases.push_back(
+      {"all then coincide", {std::vector<dvec2>(8, {100, 200}), with_noise(moving_box(1, 8), 1, 1).now_px}});
+  cases.push_back({"all now coincide", {moving_box(1, 8).then_px, std::vector<dvec2>(8, {100, 200})}});
+  cases.push_back({"all coincide", {std::vector<dvec2>(8, {100, 200}), std::vector<dvec2>(8, {101, 202})}});
+  Pairs close = moving_box(2, 8);
+  for (auto& p : close.then_px) p = dvec2{512, 512} + (p - dvec2{512, 512}) * 1e-10;
+  cases.push_back({"then 1e-8 apart", close});
+  Pairs repeated = moving_box(3, 8);
+  for (int i = 0; i < 8; ++i)
+    repeated.then_px.push_back(repeated.then_px[i / 2]), repeated.now_px.push_back(repeated.now_px[i / 2]);
+  cases.push_back({"duplicates", repeated});
+  Pairs clusters;
+  Random random(9);
+  for (int i = 0; i < 12; ++i) {
+    const dvec2 centre = i < 6 ? dvec2{10, 20} : dvec2{900, 700};
+    clusters.then_px.push_back(centre + random.in_square(1e-6));
+    clusters.now_px.push_back(centre + dvec2{3, 4} + random.in_square(0.5));
+  }
+  cases.push_back({"two clusters", clusters});
+}
+
+void add_collinear(std::vector<HardCase>& cases) {
+  const std::array<double, 4> angles{0, kPi / 2, kPi / 4, 1.1};
+  for (double angle : angles)
+    cases.push_back({"collinear at " + std::to_string(angle), near_collinear(4, 8, 0, angle)});
+  for (int e = 3; e <= 12; ++e)
+    cases.push_back(
+        {"nearly collinear 1e-" + std::to_string(e), near_collinear(e, 14, std::pow(10, -e), 0.7)});
+}
+
+void add_magnitudes(std::vector<HardCase>& cases) {
+  for (double size : {1e-3, 1.0, 1e5})
+    for (double offset : {0.0, 1e4, 1e8})
+      cases.push_back({"sprite of " + std::to_string(size) + " px at " + std::to_string(offset),
+                       exact_affine(11, 8, {1.01, 0.02, 1, -0.01, 0.99, 2}, size / 2, {offset, -offset})});
+}
+
+void add_bad_maps(std::vector<HardCase>& cases) {
+  const auto of = [](const Affine2& map) { return with_noise(exact_affine(21, 8, map), 22, 0.5); };
+  cases.push_back({"mirrored in x", of({-1, 0, 1024, 0, 1, 0})});
+  cases.push_back({"mirrored on a diagonal", of({0, 1, 0, 1, 0, 0})});
+  cases.push_back({"turned by 180 degrees", of({-1, 0, 1024, 0, -1, 1024})});
+  cases.push_back({"turned by 90 degrees", of({0, -1, 1024, 1, 0, 0})});
+  cases.push_back({"collapsed to a line", exact_affine(23, 8, {1, 0.5, 0, 2, 1, 0})});
+  cases.push_back({"identical", {moving_box(5, 14).then_px, moving_box(5, 14).then_px}});
+  // The line x = 512 goes to infinity: the points on its two sides have denominators of different sign.
+  cases.push_back(
+      {"horizon among the points", exact_perspective(24, 12, {1, 0, 0.01, 0, 1, 0, 0, 0, -5.12})});
+  Pairs blow_up = moving_box(6, 8);
+  blow_up.now_px[3] = {4e11, -7e11};  // a point at w = 1e-9 of its neighbours'
+  cases.push_back({"one point at the near plane", blow_up});
+}
+
+void add_not_finite(std::vector<HardCase>& cases) {
+  const double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (double bad : {nan, inf, -inf})
+    for (int where = 0; where < 2; ++where) {
+      Pairs pairs = moving_box(7, 8);
+      (where == 0 ? pairs.then_px : pairs.now_px)[5].y = bad;
+      cases.push_back({"one coordinate is " + std::to_string(bad), pairs, false});
+    }
+}
+
+}  // namespace
+
+std::vector<HardCase> hard_cases() {
+  std::vector<HardCase> cases;
+  add_few_points(cases);
+  add_coincident(cases);
+  add_collinear(cases);
+  add_magnitudes(cases);
+  add_bad_maps(cases);
+  add_not_finite(cases);
+  return cases;
+}
+
+Pairs garbage(std::uint64_t seed) {
+  Random random(seed);
+  const double inf = std::numeric_limits<double>::infinity();
+  const double lo = std::pow(10, random.uniform(-300, 0)), hi = std::pow(10, random.uniform(0, 300));
+  const bool poisoned = random.integer(0, 9) == 0, gridded = random.integer(0, 2) == 0;
+  const auto coordinate = [&]() -> double {
+    if (poisoned && random.integer(0, 19) == 0) return random.integer(0, 1) != 0 ? inf : inf - inf;
+    if (gridded) return random.integer(-2, 2);  // small integers provoke every kind of coincidence
+    return random.log_uniform(lo, hi) * (random.integer(0, 1) != 0 ? 1 : -1);
+  };
+  Pairs pairs;
+  const int count = random.integer(0, 16);
+  for (int i = 0; i < count; ++i) {
+    const double a = coordinate(), b = coordinate(), c = coordinate(), d = coordinate();
+    pairs.then_px.push_back({a, b});
+    pairs.now_px.push_back({c, d});
+  }
+  return pairs;
+}
+
+double largest_error(const Pairs& pairs, const std::function<dvec2(dvec2)>& map) {
+  double largest = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    largest = std::fmax(largest, glm::length(map(pairs.then_px[i]) - pairs.now_px[i]));
+  return largest;
+}
+
+double rms_error(const Pairs& pairs, const std::function<dvec2(dvec2)>& map) {
+  long double sum = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i) {
+    const dvec2 r = map(pairs.then_px[i]) - pairs.now_px[i];
+    sum += static_cast<long double>(r.x) * r.x + static_cast<long double>(r.y) * r.y;
+  }
+  return pairs.size() == 0 ? 0 : static_cast<double>(std::sqrt(sum / static_cast<long double>(pairs.size())));
+}
+
+}  // namespace talisman::tests
