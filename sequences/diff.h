@@ -18,12 +18,11 @@
 namespace talisman::sequences {
 
 struct DiffOptions {
-  std::string a;      ///< test: file or folder
-  std::string b;      ///< reference: the same kind
-  bool json = false;  ///< one JSON document (schema talisman.diff/1) in place of the table
-  std::string
-      map_dir;  ///< FLIP heat maps are written here as NNNN.png (or NAME.png for two files); empty: none
-  QualityOptions quality;  ///< costs per frame: see Quality; maps ask for FLIP whatever this says
+  std::string a;           ///< test: file or folder
+  std::string b;           ///< reference: the same kind
+  bool json = false;       ///< one JSON document (schema talisman.diff/1) in place of the table
+  std::string map_dir;     ///< FLIP heat maps go here, NNNN.png (NAME.png for two files); empty: none
+  QualityOptions quality;  ///< costs per frame: see there; maps ask for FLIP whatever this says
 };
 
 struct FrameDiff {

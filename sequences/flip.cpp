@@ -28,8 +28,8 @@ struct Matrix3 {
   }
 };
 
-/// log₂ of a positive normal number: the exponent, and 2/ln 2 · artanh((m - 1)/(m + 1)) of a mantissa in [√½,
-/// √2).
+/// log₂ of a positive normal number: the exponent, and 2/ln 2 · artanh((m - 1)/(m + 1)) of a mantissa
+/// in [√½, √2).
 inline float log2_of(float x) {
   constexpr std::int32_t kSqrtHalf = 0x3f3504f3;
   const std::int32_t bits = std::bit_cast<std::int32_t>(x) - kSqrtHalf;
@@ -42,8 +42,8 @@ inline float log2_of(float x) {
 
 /// 2^x for -126 ≤ x ≤ 126.
 inline float exp2_of(float x) {
-  constexpr float kRoundToInteger =
-      12582912.0f;  // 1.5 · 2²³: adding and subtracting it leaves the nearest integer
+  // 1.5 · 2²³: adding and subtracting it leaves the nearest integer.
+  constexpr float kRoundToInteger = 12582912.0f;
   const float whole = (x + kRoundToInteger) - kRoundToInteger;
   const float f = (x - whole) * 0.69314718056f;
   const float e =
@@ -111,8 +111,8 @@ double csf_sigma_px(double b, double pixels_per_degree) {
   return std::sqrt(b / (2 * std::numbers::pi * std::numbers::pi)) * pixels_per_degree;
 }
 
-/// All channels are cut at the radius of the widest Gaussian. Taps too small to change a float sum are left
-/// out.
+/// All channels are cut at the radius of the widest Gaussian. Taps too small to change a float sum
+/// are left out.
 Kernel csf_kernel(double b, double pixels_per_degree) {
   const int radius = static_cast<int>(std::ceil(3 * csf_sigma_px(kBlueYellowB1, pixels_per_degree)));
   Kernel kernel = gaussian_kernel(csf_sigma_px(b, pixels_per_degree), radius);
@@ -121,8 +121,8 @@ Kernel csf_kernel(double b, double pixels_per_degree) {
   return kernel;
 }
 
-/// Volume under a₁ √(π/b₁) exp(…) once its one-dimensional kernel has been normalised: w₀ is 1 / (sum along a
-/// line).
+/// Volume under a₁ √(π/b₁) exp(…) once its one-dimensional kernel has been normalised: w₀ is
+/// 1 / (sum along a line).
 double csf_volume(double a, double b, const Kernel& kernel) {
   const double line = 1.0 / kernel.weights[0];
   return a * std::sqrt(std::numbers::pi / b) * line * line;

@@ -6,14 +6,12 @@
 /// LDR-FLIP, after Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild: "FLIP: A Difference
 /// Evaluator for Alternating Images", HPG 2020. Two pipelines, per pixel:
 ///
-///   colour    linear RGB → (Y, Cx, Cz); each channel is blurred by the eye's contrast sensitivity; back to
-///   RGB, clamped; L*a*b* with the
-///             Hunt adjustment (a, b scaled by L/100); distance |ΔL| + √(Δa² + Δb²), to the power 0.7, mapped
-///             to 0 … 1      (ΔE_c)
-///   feature   luminance through edge (first derivative) and point (second derivative) detectors; the larger
-///   difference of the
-///             two magnitudes, /√2, to the power 0.5 (ΔE_f)
-///   FLIP      ΔE_c ^ (1 - ΔE_f)
+///   colour   linear RGB → (Y, Cx, Cz); each channel blurred by the eye's contrast sensitivity; back to
+///            RGB, clamped; L*a*b* with the Hunt adjustment (a, b scaled by L/100); distance
+///            |ΔL| + √(Δa² + Δb²), to the power 0.7, mapped to 0 … 1:  ΔE_c
+///   feature  luminance through edge (first derivative) and point (second derivative) detectors; the
+///            larger difference of the two magnitudes, /√2, to the power 0.5:  ΔE_f
+///   FLIP     ΔE_c ^ (1 - ΔE_f)
 ///
 /// All filters are separable; the detectors because normalising their positive and negative parts in the
 /// plane equals normalising them along the line. Powers are computed by our own polynomials (relative error

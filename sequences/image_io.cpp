@@ -13,8 +13,8 @@
 namespace talisman::sequences {
 namespace {
 
-constexpr std::int64_t kMaxPixels = std::int64_t{1}
-                                    << 28;  // 16384², 0.8 GB as bytes: more is a damaged or hostile header
+/// 16384², 0.8 GB as bytes: more is a damaged or hostile header.
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 
 /// Encodes into memory; the bytes then go through the one writer that checks everything.
 std::string encode(const std::string& path, const std::string& extension, const OIIO::ImageSpec& spec,

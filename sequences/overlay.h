@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Each sprite's outline, coloured by age, drawn on the frame (the boxes of [LS97 Fig. 24]): re-renders can
-/// be seen.
+/// Each sprite's outline, coloured by age, drawn on the frame (the boxes of [LS97 Fig. 24]):
+/// re-renders can be seen.
 ///
 /// Lines are 2 px wide and antialiased. A perspective map keeps straight lines straight, so an edge is
 /// clipped once, in homogeneous coordinates, to the picture and to denominators above 0; what is behind the

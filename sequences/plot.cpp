@@ -78,8 +78,8 @@ const char* style_words(SeriesStyle style) {
 
 /// Okabe & Ito 2008, without yellow (too pale on white) and with black last.
 constexpr std::array kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
-constexpr std::array kMarkers = {7,  5, 9, 13,
-                                 11, 6, 4};  // filled circle, square, triangles, diamond; then hollow ones
+/// Filled circle, square, triangles, diamond; then hollow ones.
+constexpr std::array kMarkers = {7, 5, 9, 13, 11, 6, 4};
 
 std::string curve(const PlotSeries& series, std::size_t index) {
   std::string text = "$data" + std::to_string(index) + " using 1:2 with " + style_words(series.style) +

@@ -2,8 +2,7 @@
 #pragma once
 
 /// Curves as pictures, with the numbers beside them: NAME.svg drawn by gnuplot, and NAME.csv, one line per
-/// point
-/// (`series,x,y`; the header names quantity and unit).
+/// point (`series,x,y`; the header names quantity and unit).
 ///
 /// Colours are those of Okabe and Ito (told apart by colour-blind readers); markers differ too, for grey
 /// print.
@@ -15,9 +14,9 @@
 
 namespace talisman::sequences {
 
+/// A point that is not finite, or ≤ 0 on a logarithmic axis, leaves a gap in the curve.
 struct PlotPoint {
-  double x = 0,
-         y = 0;  ///< a point that is not finite, or ≤ 0 on a logarithmic axis, leaves a gap in the curve
+  double x = 0, y = 0;
 };
 
 enum class SeriesStyle { Line, Points, LinePoints, Steps };

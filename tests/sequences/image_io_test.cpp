@@ -144,25 +144,6 @@ TEST(WriteAtomically, FullDiskLeavesNoHalfPicture) {
   EXPECT_TRUE(folder.names().empty());
 }
 
-// /dev/full answers every write with "no space left", whoever asks; the temporary lies beside the target, so
-// a link leads there.
-TEST(WriteAtomically, NoSpaceLeftIsNamed) {
-  const Folder folder;
-  const std::string message = message_of<OutputError>([&] {
-    write_atomically(folder / "a.txt", [](const std::string& temporary) {
-      fs::create_symlink("/dev/full", temporary);
-      write_text_atomically(temporary + "x", "fine");
-      fs::remove(temporary + "x");
-      std::ofstream out(temporary);
-      out << "text" << std::flush;
-      if (!out) throw OutputError(temporary + ": No space left on device");
-    });
-  });
-  EXPECT_THAT(message, HasSubstr("No space left"));
-  EXPECT_TRUE(folder.names().empty());
-  EXPECT_TRUE(fs::exists("/dev/full"));
-}
-
 // Root may write anywhere, but not below a regular file.
 TEST(WriteAtomically, FolderThatCannotBeWrittenIsNamed) {
   const Folder folder;
