@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
   throw OutputError(path + ": cannot be written: " + std::strerror(error));
 }
 
-/// Hidden, in the same folder (a rename never crosses devices), unique among processes and threads. The extension stays last.
+/// Hidden, in the same folder (a rename never crosses devices), unique among processes and threads. The
+/// extension stays last.
 std::string temporary_name(const std::string& path) {
   static std::atomic<unsigned> counter{0};
   const fs::path target(path);
@@ -71,7 +72,8 @@ void flush_and_rename(const std::string& temporary, const std::string& path) {
 
 }  // namespace
 
-void write_atomically(const std::string& path, const std::function<void(const std::string& temporary)>& content) {
+void write_atomically(const std::string& path,
+                      const std::function<void(const std::string& temporary)>& content) {
   const std::string temporary = temporary_name(path);
   try {
     content(temporary);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// A font of 5×7 dots for labels in pictures: digits, capital letters (small ones are shown as capitals) and some signs. Everything
-/// else, UTF-8 sequences included, is a hollow box per byte sequence.
+/// A font of 5×7 dots for labels in pictures: digits, capital letters (small ones are shown as capitals) and
+/// some signs. Everything else, UTF-8 sequences included, is a hollow box per byte sequence.
 
 #include <array>
 #include <cstdint>

@@ -17,7 +17,8 @@ namespace {
 
 constexpr std::size_t kKeptOutput = 64 * 1024;
 
-/// What the child does between its birth and the start of the program. posix_spawn and not fork: other threads of ours may hold locks.
+/// What the child does between its birth and the start of the program. posix_spawn and not fork: other
+/// threads of ours may hold locks.
 class Actions {
  public:
   Actions() { posix_spawn_file_actions_init(&actions_); }
@@ -33,8 +34,10 @@ class Actions {
     if (options.stdout_file.empty())
       posix_spawn_file_actions_adddup2(&actions_, output_fd, STDOUT_FILENO);
     else
-      posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, options.stdout_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    if (!options.directory.empty()) posix_spawn_file_actions_addchdir_np(&actions_, options.directory.c_str());
+      posix_spawn_file_actions_addopen(&actions_, STDOUT_FILENO, options.stdout_file.c_str(),
+                                       O_WRONLY | O_CREAT | O_TRUNC, 0666);
+    if (!options.directory.empty())
+      posix_spawn_file_actions_addchdir_np(&actions_, options.directory.c_str());
   }
   const posix_spawn_file_actions_t* get() const { return &actions_; }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Other programs (ffmpeg, gnuplot), run without a shell: no argument is ever interpreted by anything but its receiver.
+/// Other programs (ffmpeg, gnuplot), run without a shell: no argument is ever interpreted by anything but its
+/// receiver.
 
 #include <string>
 #include <vector>
@@ -15,9 +16,9 @@ struct ChildOptions {
 };
 
 struct ChildResult {
-  bool started = false;     ///< false: not found or not executable; `output` says why
-  int exit_code = -1;       ///< 128 + signal number when it was killed by one
-  std::string output;       ///< the last 64 KiB of stderr (and stdout, unless it went to a file)
+  bool started = false;  ///< false: not found or not executable; `output` says why
+  int exit_code = -1;    ///< 128 + signal number when it was killed by one
+  std::string output;    ///< the last 64 KiB of stderr (and stdout, unless it went to a file)
   bool succeeded() const { return started && exit_code == 0; }
   /// The last `lines` lines of output that are not blank, joined by " | "; the exit code when there are none.
   std::string reason(int lines = 3) const;

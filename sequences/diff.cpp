@@ -26,7 +26,8 @@ using Frames = std::map<std::string, fs::path, ByNumber>;
 
 bool is_frame(const fs::path& path) {
   const std::string stem = path.stem().string(), extension = path.extension().string();
-  return stem.size() >= 4 && std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
+  return stem.size() >= 4 &&
+         std::all_of(stem.begin(), stem.end(), [](char c) { return c >= '0' && c <= '9'; }) &&
          (extension == ".png" || extension == ".exr");
 }
 
@@ -45,12 +46,16 @@ Frames frames_of(const fs::path& folder) {
   return frames;
 }
 
-std::string size_text(const Image8& image) { return std::to_string(image.width) + "x" + std::to_string(image.height); }
+std::string size_text(const Image8& image) {
+  return std::to_string(image.width) + "x" + std::to_string(image.height);
+}
 
-FrameDiff diff_files(const std::string& name, const std::string& a, const std::string& b, const DiffOptions& options) {
+FrameDiff diff_files(const std::string& name, const std::string& a, const std::string& b,
+                     const DiffOptions& options) {
   const Image8 test = read_image(a), reference = read_image(b);
   if (test.width != reference.width || test.height != reference.height)
-    throw InputError("size " + size_text(test) + ", rule: the same as " + b + ", which is " + size_text(reference), a);
+    throw InputError(
+        "size " + size_text(test) + ", rule: the same as " + b + ", which is " + size_text(reference), a);
   QualityOptions quality = options.quality;
   const bool map = !options.map_dir.empty();
   if (map) quality.flip = false;  // it comes out of the map
@@ -58,7 +63,8 @@ FrameDiff diff_files(const std::string& name, const std::string& a, const std::s
   if (map) {
     const std::vector<float> error = flip_map(test, reference, options.quality.pixels_per_degree);
     result.quality.flip = mean(error);
-    write_png((fs::path(options.map_dir) / (name + ".png")).string(), heat_map(error, test.width, test.height));
+    write_png((fs::path(options.map_dir) / (name + ".png")).string(),
+              heat_map(error, test.width, test.height));
   }
   return result;
 }
@@ -94,8 +100,10 @@ nlohmann::json json_of(const Quality& quality, const QualityOptions& options) {
   return j;
 }
 
-void print_json(const DiffReport& report, const DiffSummary& summary, const DiffOptions& options, std::ostream& out) {
-  nlohmann::json document{{"schema", "talisman.diff/1"}, {"a", options.a}, {"b", options.b}, {"frames", nlohmann::json::array()}};
+void print_json(const DiffReport& report, const DiffSummary& summary, const DiffOptions& options,
+                std::ostream& out) {
+  nlohmann::json document{
+      {"schema", "talisman.diff/1"}, {"a", options.a}, {"b", options.b}, {"frames", nlohmann::json::array()}};
   for (const FrameDiff& frame : report.frames) {
     nlohmann::json line = json_of(frame.quality, options.quality);
     line["name"] = frame.name;
@@ -114,22 +122,29 @@ std::string fixed(double value, int digits) {
   return out.str();
 }
 
-void print_row(const std::string& name, const Quality& q, const QualityOptions& options, std::size_t name_width, std::ostream& out) {
+void print_row(const std::string& name, const Quality& q, const QualityOptions& options,
+               std::size_t name_width, std::ostream& out) {
   out << std::left << std::setw(static_cast<int>(name_width)) << name << std::right << std::setw(10)
       << (std::isfinite(q.psnr_db) ? fixed(q.psnr_db, 2) : "identical");
-  out << std::setw(9) << (options.ssim ? fixed(q.ssim, 5) : "-") << std::setw(9) << (options.flip ? fixed(q.flip, 5) : "-");
+  out << std::setw(9) << (options.ssim ? fixed(q.ssim, 5) : "-") << std::setw(9)
+      << (options.flip ? fixed(q.flip, 5) : "-");
   out << std::setw(5) << q.max_difference << std::setw(10) << fixed(100 * q.changed_pixels, 2) << "\n";
 }
 
-void print_missing(const std::vector<std::string>& names, const std::string& there, const std::string& not_there, std::ostream& out) {
-  for (const std::string& name : names) out << "frame " << name << " is in " << there << " only, not in " << not_there << "\n";
+void print_missing(const std::vector<std::string>& names, const std::string& there,
+                   const std::string& not_there, std::ostream& out) {
+  for (const std::string& name : names)
+    out << "frame " << name << " is in " << there << " only, not in " << not_there << "\n";
 }
 
-void print_table(const DiffReport& report, const DiffSummary& summary, const DiffOptions& options, std::ostream& out) {
+void print_table(const DiffReport& report, const DiffSummary& summary, const DiffOptions& options,
+                 std::ostream& out) {
   std::size_t width = 7;
   for (const FrameDiff& frame : report.frames) width = std::max(width, frame.name.size() + 1);
-  out << std::left << std::setw(static_cast<int>(width)) << "frame" << "   psnr_db     ssim     flip  max  changed%\n";
-  for (const FrameDiff& frame : report.frames) print_row(frame.name, frame.quality, options.quality, width, out);
+  out << std::left << std::setw(static_cast<int>(width)) << "frame"
+      << "   psnr_db     ssim     flip  max  changed%\n";
+  for (const FrameDiff& frame : report.frames)
+    print_row(frame.name, frame.quality, options.quality, width, out);
   if (report.frames.size() > 1) {
     print_row("mean", summary.mean, options.quality, width, out);
     print_row("worst", summary.worst, options.quality, width, out);
@@ -156,7 +171,8 @@ DiffSummary summarize(const std::vector<FrameDiff>& frames) {
     summary.worst.changed_pixels = std::max(summary.worst.changed_pixels, q.changed_pixels);
   }
   const double n = summary.frames;
-  summary.mean = {-10 * std::log10(squared_error / n), ssim / n, flip / n, summary.worst.max_difference, changed / n};
+  summary.mean = {-10 * std::log10(squared_error / n), ssim / n, flip / n, summary.worst.max_difference,
+                  changed / n};
   return summary;
 }
 
@@ -165,7 +181,9 @@ DiffReport diff(const DiffOptions& options) {
     if (!fs::exists(side)) throw InputError("does not exist", side);
   const bool folder = fs::is_directory(options.a);
   if (folder != fs::is_directory(options.b))
-    throw InputError(std::string("is a ") + (folder ? "folder" : "file") + " but " + options.b + " is not, rule: two of a kind", options.a);
+    throw InputError(std::string("is a ") + (folder ? "folder" : "file") + " but " + options.b +
+                         " is not, rule: two of a kind",
+                     options.a);
   if (!options.map_dir.empty()) make_folder(options.map_dir);
   if (folder) return diff_folders(options);
   return {{diff_files(fs::path(options.a).stem().string(), options.a, options.b, options)}, {}, {}};

@@ -28,7 +28,8 @@ struct Matrix3 {
   }
 };
 
-/// log₂ of a positive normal number: the exponent, and 2/ln 2 · artanh((m - 1)/(m + 1)) of a mantissa in [√½, √2).
+/// log₂ of a positive normal number: the exponent, and 2/ln 2 · artanh((m - 1)/(m + 1)) of a mantissa
+/// in [√½, √2).
 inline float log2_of(float x) {
   constexpr std::int32_t kSqrtHalf = 0x3f3504f3;
   const std::int32_t bits = std::bit_cast<std::int32_t>(x) - kSqrtHalf;
@@ -41,10 +42,12 @@ inline float log2_of(float x) {
 
 /// 2^x for -126 ≤ x ≤ 126.
 inline float exp2_of(float x) {
-  constexpr float kRoundToInteger = 12582912.0f;  // 1.5 · 2²³: adding and subtracting it leaves the nearest integer
+  // 1.5 · 2²³: adding and subtracting it leaves the nearest integer.
+  constexpr float kRoundToInteger = 12582912.0f;
   const float whole = (x + kRoundToInteger) - kRoundToInteger;
   const float f = (x - whole) * 0.69314718056f;
-  const float e = 1 + f * (1 + f * (1.0f / 2 + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720))))));
+  const float e =
+      1 + f * (1 + f * (1.0f / 2 + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720))))));
   return e * std::bit_cast<float>((static_cast<std::int32_t>(whole) + 127) << 23);
 }
 
@@ -79,8 +82,8 @@ Matrix3 rgb_from_relative_xyz() {
   return inverse;
 }
 
-/// The opponent channels without their scale factors, which cancel: y = Y/Yn (the luminance of the feature pipeline too),
-/// cx = X/Xn - Y/Yn, cz = Y/Yn - Z/Zn.
+/// The opponent channels without their scale factors, which cancel: y = Y/Yn (the luminance of the feature
+/// pipeline too), cx = X/Xn - Y/Yn, cz = Y/Yn - Z/Zn.
 struct Opponent {
   Plane y, cx, cz;
 };
@@ -108,15 +111,18 @@ double csf_sigma_px(double b, double pixels_per_degree) {
   return std::sqrt(b / (2 * std::numbers::pi * std::numbers::pi)) * pixels_per_degree;
 }
 
-/// All channels are cut at the radius of the widest Gaussian. Taps too small to change a float sum are left out.
+/// All channels are cut at the radius of the widest Gaussian. Taps too small to change a float sum
+/// are left out.
 Kernel csf_kernel(double b, double pixels_per_degree) {
   const int radius = static_cast<int>(std::ceil(3 * csf_sigma_px(kBlueYellowB1, pixels_per_degree)));
   Kernel kernel = gaussian_kernel(csf_sigma_px(b, pixels_per_degree), radius);
-  while (kernel.weights.size() > 1 && kernel.weights.back() < 1e-10f * kernel.weights.front()) kernel.weights.pop_back();
+  while (kernel.weights.size() > 1 && kernel.weights.back() < 1e-10f * kernel.weights.front())
+    kernel.weights.pop_back();
   return kernel;
 }
 
-/// Volume under a₁ √(π/b₁) exp(…) once its one-dimensional kernel has been normalised: w₀ is 1 / (sum along a line).
+/// Volume under a₁ √(π/b₁) exp(…) once its one-dimensional kernel has been normalised: w₀ is
+/// 1 / (sum along a line).
 double csf_volume(double a, double b, const Kernel& kernel) {
   const double line = 1.0 / kernel.weights[0];
   return a * std::sqrt(std::numbers::pi / b) * line * line;
@@ -124,7 +130,8 @@ double csf_volume(double a, double b, const Kernel& kernel) {
 
 /// The blue-yellow sensitivity is a sum of two Gaussians: both are applied and mixed by their volumes.
 Plane blur_blue_yellow(const Plane& cz, double pixels_per_degree) {
-  const Kernel wide = csf_kernel(kBlueYellowB1, pixels_per_degree), narrow = csf_kernel(kBlueYellowB2, pixels_per_degree);
+  const Kernel wide = csf_kernel(kBlueYellowB1, pixels_per_degree),
+               narrow = csf_kernel(kBlueYellowB2, pixels_per_degree);
   const double wide_volume = csf_volume(kBlueYellowA1, kBlueYellowB1, wide);
   const double narrow_volume = csf_volume(kBlueYellowA2, kBlueYellowB2, narrow);
   const float wide_share = static_cast<float>(wide_volume / (wide_volume + narrow_volume));
@@ -158,7 +165,8 @@ struct HuntLab {
 
 /// What the eye sees of the colours, in a space where distances are comparable.
 HuntLab seen_colors(const Opponent& in, double pixels_per_degree) {
-  HuntLab seen{blur(in.y, csf_kernel(kAchromaticB, pixels_per_degree)), blur(in.cx, csf_kernel(kRedGreenB, pixels_per_degree)),
+  HuntLab seen{blur(in.y, csf_kernel(kAchromaticB, pixels_per_degree)),
+               blur(in.cx, csf_kernel(kRedGreenB, pixels_per_degree)),
                blur_blue_yellow(in.cz, pixels_per_degree)};
   const Matrix3 to_rgb = rgb_from_relative_xyz(), to_xyz = relative_xyz_from_rgb();
   for_each_row(in.y.height, [&](int row) {
@@ -178,7 +186,8 @@ inline float hyab(float dl, float da, float db) { return std::fabs(dl) + std::sq
 float largest_color_distance() {
   const Matrix3 to_xyz = relative_xyz_from_rgb();
   const Color3 green = hunt_lab(to_xyz({0, 1, 0})), blue = hunt_lab(to_xyz({0, 0, 1}));
-  return power(hyab(green.x - blue.x, green.y - blue.y, green.z - blue.z), static_cast<float>(kColorExponent));
+  return power(hyab(green.x - blue.x, green.y - blue.y, green.z - blue.z),
+               static_cast<float>(kColorExponent));
 }
 
 /// Distances up to the knee take most of 0 … 1: beyond it, colours are just "very different".
@@ -199,7 +208,8 @@ Kernel detector_kernel(double sigma_px, int radius, bool odd) {
     (w[k] > 0 ? positive : negative) += (odd ? 1 : copies) * std::fabs(w[k]);
   }
   Kernel kernel{{}, odd};
-  for (const double v : w) kernel.weights.push_back(v == 0 ? 0.0f : static_cast<float>(v / (v > 0 ? positive : negative)));
+  for (const double v : w)
+    kernel.weights.push_back(v == 0 ? 0.0f : static_cast<float>(v / (v > 0 ? positive : negative)));
   return kernel;
 }
 
@@ -225,7 +235,8 @@ Features features_of(const Plane& luminance, double pixels_per_degree) {
     to_magnitude(along_x, filter_columns(smooth_rows, derivative));
     return along_x;
   };
-  return {magnitude(detector_kernel(sigma_px, radius, true)), magnitude(detector_kernel(sigma_px, radius, false))};
+  return {magnitude(detector_kernel(sigma_px, radius, true)),
+          magnitude(detector_kernel(sigma_px, radius, false))};
 }
 
 struct Seen {
@@ -272,8 +283,8 @@ std::vector<float> flip_map(const Image8& test, const Image8& reference, double 
 Image8 heat_map(const std::vector<float>& error, int width, int height) {
   TALISMAN_CHECK_EQ(error.size(), static_cast<std::size_t>(width) * height);
   constexpr int kStops = 6;
-  constexpr float kPalette[kStops][3] = {{0, 0, 4},      {58, 16, 104},  {137, 38, 124},
-                                         {220, 74, 96},  {253, 154, 106}, {252, 253, 200}};
+  constexpr float kPalette[kStops][3] = {{0, 0, 4},     {58, 16, 104},   {137, 38, 124},
+                                         {220, 74, 96}, {253, 154, 106}, {252, 253, 200}};
   Image8 image{width, height, {}};
   image.rgb.reserve(error.size() * 3);
   for (const float e : error) {

@@ -13,17 +13,19 @@
 namespace talisman::sequences {
 namespace {
 
-constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;  // 16384², 0.8 GB as bytes: more is a damaged or hostile header
+/// 16384², 0.8 GB as bytes: more is a damaged or hostile header.
+constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 
 /// Encodes into memory; the bytes then go through the one writer that checks everything.
-std::string encode(const std::string& path, const std::string& extension, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                   const void* pixels) {
+std::string encode(const std::string& path, const std::string& extension, const OIIO::ImageSpec& spec,
+                   OIIO::TypeDesc type, const void* pixels) {
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   const std::string name = "picture" + extension;
   const auto out = OIIO::ImageOutput::create(name, &memory);
   const bool written = out && out->open(name, spec) && out->write_image(type, pixels) && out->close();
-  if (!written) throw OutputError(path + ": cannot be encoded: " + (out ? out->geterror() : OIIO::geterror()));
+  if (!written)
+    throw OutputError(path + ": cannot be encoded: " + (out ? out->geterror() : OIIO::geterror()));
   return {bytes.begin(), bytes.end()};
 }
 
@@ -59,8 +61,8 @@ std::vector<Pixel> read_pixels(OIIO::ImageInput& in, OIIO::TypeDesc type, const 
 void check_readable(const OIIO::ImageSpec& spec, const std::string& path) {
   const std::int64_t pixels = std::int64_t{spec.width} * spec.height;
   if (spec.width < 1 || spec.height < 1 || pixels > kMaxPixels || spec.depth > 1)
-    throw InputError("size " + std::to_string(spec.width) + "x" + std::to_string(spec.height) + ", rule: 1 to " +
-                         std::to_string(kMaxPixels) + " pixels",
+    throw InputError("size " + std::to_string(spec.width) + "x" + std::to_string(spec.height) +
+                         ", rule: 1 to " + std::to_string(kMaxPixels) + " pixels",
                      path);
   if (spec.deep || spec.nchannels < 1 || spec.nchannels > 64)
     throw InputError(std::to_string(spec.nchannels) + " channels, rule: 1 to 64, not deep", path);
@@ -94,14 +96,17 @@ void write_exr(const std::string& path, const chunker::Frame& frame) {
   write_text_atomically(path, encode(path, ".exr", spec, OIIO::TypeDesc::FLOAT, linear.data()));
 }
 
-Image8 to_image8(const chunker::Frame& frame) { return {frame.width, frame.height, chunker::srgb_bytes(frame)}; }
+Image8 to_image8(const chunker::Frame& frame) {
+  return {frame.width, frame.height, chunker::srgb_bytes(frame)};
+}
 
 Image8 read_image(const std::string& path) {
   const auto in = open_image(path);
   const OIIO::ImageSpec& spec = in->spec();
   Image8 image{spec.width, spec.height, {}};
   if (holds_linear_light(spec))
-    image.rgb = rgb_from_channels(read_pixels<float>(*in, OIIO::TypeDesc::FLOAT, path), spec.nchannels, byte_from_linear);
+    image.rgb = rgb_from_channels(read_pixels<float>(*in, OIIO::TypeDesc::FLOAT, path), spec.nchannels,
+                                  byte_from_linear);
   else
     image.rgb = rgb_from_channels(read_pixels<std::uint8_t>(*in, OIIO::TypeDesc::UINT8, path), spec.nchannels,
                                   [](std::uint8_t v) { return v; });

@@ -48,7 +48,8 @@ void draw_segment(Image8& image, const Segment& s, Rgb color) {
   const double from = std::min(major(s.a), major(s.b)), to = std::max(major(s.a), major(s.b));
   const double run = major(s.b) - major(s.a);
   const double slope = run != 0 ? (minor(s.b) - minor(s.a)) / run : 0;
-  for (int i = static_cast<int>(std::floor(from - kLineWidthPx)); i <= static_cast<int>(std::ceil(to + kLineWidthPx)); ++i) {
+  for (int i = static_cast<int>(std::floor(from - kLineWidthPx));
+       i <= static_cast<int>(std::ceil(to + kLineWidthPx)); ++i) {
     const double middle = minor(s.a) + slope * (std::clamp(i + 0.5, from, to) - major(s.a));
     const int first = static_cast<int>(std::floor(middle - kLineWidthPx));
     for (int j = first; j <= first + 2 * static_cast<int>(kLineWidthPx) + 1; ++j) {
@@ -58,17 +59,19 @@ void draw_segment(Image8& image, const Segment& s, Rgb color) {
   }
 }
 
-/// The part of the homogeneous edge a…b that is in front (w > 0) and inside the picture and its margin, in pixels.
+/// The part of the homogeneous edge a…b that is in front (w > 0) and inside the picture and its margin, in
+/// pixels.
 std::optional<Segment> visible_part(const dvec3& a, const dvec3& b, int width, int height) {
   // Each plane is a linear function that is positive inside; along the edge it is linear in t.
   const auto planes = [&](const dvec3& p) {
-    return std::array<double, 5>{p.z, p.x + kMarginPx * p.z, (width + kMarginPx) * p.z - p.x, p.y + kMarginPx * p.z,
-                                 (height + kMarginPx) * p.z - p.y};
+    return std::array<double, 5>{p.z, p.x + kMarginPx * p.z, (width + kMarginPx) * p.z - p.x,
+                                 p.y + kMarginPx * p.z, (height + kMarginPx) * p.z - p.y};
   };
   const auto at_a = planes(a), at_b = planes(b);
   double t0 = 0, t1 = 1;
   for (std::size_t i = 0; i < at_a.size(); ++i) {
-    if (!std::isfinite(at_a[i]) || !std::isfinite(at_b[i]) || (at_a[i] <= 0 && at_b[i] <= 0)) return std::nullopt;
+    if (!std::isfinite(at_a[i]) || !std::isfinite(at_b[i]) || (at_a[i] <= 0 && at_b[i] <= 0))
+      return std::nullopt;
     const double crossing = at_a[i] / (at_a[i] - at_b[i]);
     if (at_a[i] < 0) t0 = std::max(t0, crossing);
     if (at_b[i] < 0) t1 = std::min(t1, crossing);
@@ -110,15 +113,18 @@ bool covers_middle(const Outline& outline, int width, int height) {
   for (int i = 0; i < 4; ++i) {
     const dvec3 &a = corners[i], &b = corners[(i + 1) % 4];
     if (!(a.z > 0)) return false;
-    const double side = middle.x * (a.y * b.z - a.z * b.y) + middle.y * (a.z * b.x - a.x * b.z) + (a.x * b.y - a.y * b.x);
+    const double side =
+        middle.x * (a.y * b.z - a.z * b.y) + middle.y * (a.z * b.x - a.x * b.z) + (a.x * b.y - a.y * b.x);
     positive += side > 0;
     negative += side < 0;
   }
   return positive == 4 || negative == 4;
 }
 
-/// The corner that the label belongs to: the first corner of the sprite in view, else the first visible end of an edge.
-std::optional<dvec2> label_anchor(const Outline& outline, const std::vector<Segment>& edges, int width, int height) {
+/// The corner that the label belongs to: the first corner of the sprite in view, else the first visible end
+/// of an edge.
+std::optional<dvec2> label_anchor(const Outline& outline, const std::vector<Segment>& edges, int width,
+                                  int height) {
   for (const dvec3& c : corners_of(outline)) {
     const dvec2 p{c.x / c.z, c.y / c.z};
     if (c.z > 0 && p.x >= 0 && p.x < width && p.y >= 0 && p.y < height) return p;
@@ -128,27 +134,33 @@ std::optional<dvec2> label_anchor(const Outline& outline, const std::vector<Segm
   return std::nullopt;
 }
 
-bool overlap(const RectI& a, const RectI& b) { return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1; }
+bool overlap(const RectI& a, const RectI& b) {
+  return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+}
 
 RectI moved_inside(RectI box, int width, int height) {
-  const int dx = std::max(std::min(0, width - box.x1), -box.x0), dy = std::max(std::min(0, height - box.y1), -box.y0);
+  const int dx = std::max(std::min(0, width - box.x1), -box.x0),
+            dy = std::max(std::min(0, height - box.y1), -box.y0);
   return {box.x0 + dx, box.y0 + dy, box.x1 + dx, box.y1 + dy};
 }
 
 class Labels {
  public:
-  explicit Labels(Image8& image) : image_(image), scale_(std::min(image.width, image.height) >= 600 ? 2 : 1) {}
+  explicit Labels(Image8& image)
+      : image_(image), scale_(std::min(image.width, image.height) >= 600 ? 2 : 1) {}
 
   void draw(const std::string& text, dvec2 anchor, Rgb color) {
     const auto glyphs = glyphs_of(text);
     if (glyphs.empty()) return;
-    const ivec2 size{(static_cast<int>(glyphs.size()) * kGlyphAdvance + 1) * scale_, (kGlyphHeight + 2) * scale_};
+    const ivec2 size{(static_cast<int>(glyphs.size()) * kGlyphAdvance + 1) * scale_,
+                     (kGlyphHeight + 2) * scale_};
     const RectI box = free_place(anchor, size);
     taken_.push_back(box);
     for (int y = box.y0; y < box.y1; ++y)
       for (int x = box.x0; x < box.x1; ++x) blend(image_, x, y, {12, 12, 16}, 0.75);
     for (std::size_t i = 0; i < glyphs.size(); ++i)
-      draw_glyph(glyphs[i], {box.x0 + (static_cast<int>(i) * kGlyphAdvance + 1) * scale_, box.y0 + scale_}, color);
+      draw_glyph(glyphs[i], {box.x0 + (static_cast<int>(i) * kGlyphAdvance + 1) * scale_, box.y0 + scale_},
+                 color);
   }
 
  private:
@@ -159,7 +171,8 @@ class Labels {
       return std::none_of(taken_.begin(), taken_.end(), [&box](const RectI& t) { return overlap(t, box); });
     };
     const auto at = [&](int row) {
-      return moved_inside({x, y + row * size.y, x + size.x, y + (row + 1) * size.y}, image_.width, image_.height);
+      return moved_inside({x, y + row * size.y, x + size.x, y + (row + 1) * size.y}, image_.width,
+                          image_.height);
     };
     const int rows = image_.height / std::max(size.y, 1);
     for (int step = 0; step <= rows; ++step)
@@ -171,7 +184,8 @@ class Labels {
   void draw_glyph(const Glyph& glyph, ivec2 at, Rgb color) {
     for (int y = 0; y < kGlyphHeight * scale_; ++y)
       for (int x = 0; x < kGlyphWidth * scale_; ++x)
-        if (glyph[y / scale_] >> (kGlyphWidth - 1 - x / scale_) & 1) blend(image_, at.x + x, at.y + y, color, 1);
+        if (glyph[y / scale_] >> (kGlyphWidth - 1 - x / scale_) & 1)
+          blend(image_, at.x + x, at.y + y, color, 1);
   }
 
   Image8& image_;
@@ -189,7 +203,8 @@ std::array<std::uint8_t, 3> age_color(int age_frames, int oldest_frames) {
   const int stop = at < 1 ? 0 : 1;
   Rgb color;
   for (int c = 0; c < 3; ++c)
-    color[c] = static_cast<std::uint8_t>(kStops[stop][c] + (at - stop) * (kStops[stop + 1][c] - kStops[stop][c]) + 0.5);
+    color[c] = static_cast<std::uint8_t>(kStops[stop][c] +
+                                         (at - stop) * (kStops[stop + 1][c] - kStops[stop][c]) + 0.5);
   return color;
 }
 
@@ -205,7 +220,8 @@ void draw_outlines(Image8& image, const std::vector<Outline>& outlines, int olde
   }
   Labels labels(image);
   for (std::size_t i = 0; i < outlines.size(); ++i)
-    if (anchors[i]) labels.draw(outlines[i].label, *anchors[i], age_color(outlines[i].age_frames, oldest_frames));
+    if (anchors[i])
+      labels.draw(outlines[i].label, *anchors[i], age_color(outlines[i].age_frames, oldest_frames));
 }
 
 }  // namespace talisman::sequences

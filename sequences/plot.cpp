@@ -57,27 +57,33 @@ bool anything_drawable(const PlotSeries& series, const Plot& plot) {
 /// A blank line breaks the curve where a point cannot be drawn.
 std::string data_block(const PlotSeries& series, const Plot& plot, std::size_t index) {
   std::string block = "$data" + std::to_string(index) + " << END_OF_DATA\n";
-  for (const PlotPoint& p : series.points) block += drawable(p, plot) ? number(p.x) + " " + number(p.y) + "\n" : "\n";
+  for (const PlotPoint& p : series.points)
+    block += drawable(p, plot) ? number(p.x) + " " + number(p.y) + "\n" : "\n";
   return block + "END_OF_DATA\n";
 }
 
 const char* style_words(SeriesStyle style) {
   switch (style) {
-    case SeriesStyle::Line: return "lines";
-    case SeriesStyle::Points: return "points";
-    case SeriesStyle::LinePoints: return "linespoints";
-    case SeriesStyle::Steps: return "steps";
+    case SeriesStyle::Line:
+      return "lines";
+    case SeriesStyle::Points:
+      return "points";
+    case SeriesStyle::LinePoints:
+      return "linespoints";
+    case SeriesStyle::Steps:
+      return "steps";
   }
   return "lines";
 }
 
 /// Okabe & Ito 2008, without yellow (too pale on white) and with black last.
 constexpr std::array kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
-constexpr std::array kMarkers = {7, 5, 9, 13, 11, 6, 4};  // filled circle, square, triangles, diamond; then hollow ones
+/// Filled circle, square, triangles, diamond; then hollow ones.
+constexpr std::array kMarkers = {7, 5, 9, 13, 11, 6, 4};
 
 std::string curve(const PlotSeries& series, std::size_t index) {
-  std::string text = "$data" + std::to_string(index) + " using 1:2 with " + style_words(series.style) + " linecolor rgb '" +
-                     kColors[index % kColors.size()] + "'";
+  std::string text = "$data" + std::to_string(index) + " using 1:2 with " + style_words(series.style) +
+                     " linecolor rgb '" + kColors[index % kColors.size()] + "'";
   if (series.style != SeriesStyle::Points) {
     text += " linewidth 2";
     if (index >= kColors.size()) text += " dashtype " + std::to_string(1 + index / kColors.size());
@@ -104,18 +110,23 @@ std::string empty_plot(const Plot& plot) {
 }  // namespace
 
 std::string plot_csv(const Plot& plot) {
-  std::string csv = "series," + csv_text(with_unit(plot.x, " [", "]")) + "," + csv_text(with_unit(plot.y, " [", "]")) + "\n";
+  std::string csv = "series," + csv_text(with_unit(plot.x, " [", "]")) + "," +
+                    csv_text(with_unit(plot.y, " [", "]")) + "\n";
   for (const PlotSeries& series : plot.series)
-    for (const PlotPoint& p : series.points) csv += csv_text(series.name) + "," + csv_number(p.x) + "," + csv_number(p.y) + "\n";
+    for (const PlotPoint& p : series.points)
+      csv += csv_text(series.name) + "," + csv_number(p.x) + "," + csv_number(p.y) + "\n";
   return csv;
 }
 
 std::string plot_script(const Plot& plot, const PlotFiles& files) {
   TALISMAN_CHECK(files.width_px >= 100 && files.width_px <= 10000);
   TALISMAN_CHECK(files.height_px >= 100 && files.height_px <= 10000);
-  std::string script = "set encoding utf8\nset terminal svg noenhanced font 'Helvetica,14' background rgb 'white' size " +
-                       std::to_string(files.width_px) + "," + std::to_string(files.height_px) + "\n";
-  script += "set border 3 linecolor rgb '#404040'\nset tics nomirror\nset grid linecolor rgb '#d0d0d0' linewidth 0.5\n";
+  std::string script =
+      "set encoding utf8\nset terminal svg noenhanced font 'Helvetica,14' background rgb 'white' size " +
+      std::to_string(files.width_px) + "," + std::to_string(files.height_px) + "\n";
+  script +=
+      "set border 3 linecolor rgb '#404040'\nset tics nomirror\nset grid linecolor rgb '#b0b0b0' linewidth "
+      "0.5\n";
   script += "set key outside right top Left reverse\nset title " + quoted(plot.title) + "\n";
   script += axis_words("x", plot.x) + axis_words("y", plot.y);
   std::string curves;
@@ -139,7 +150,8 @@ void write_plot(const std::string& dir, const std::string& name, const Plot& plo
     std::error_code ignored;
     fs::remove(input, ignored);
     if (!child.succeeded()) throw OutputError(svg + ": gnuplot failed: " + child.reason());
-    if (fs::file_size(temporary, ignored) == 0 || ignored) throw OutputError(svg + ": gnuplot drew nothing: " + child.reason());
+    if (fs::file_size(temporary, ignored) == 0 || ignored)
+      throw OutputError(svg + ": gnuplot drew nothing: " + child.reason());
   });
 }
 

@@ -15,19 +15,45 @@ namespace {
 
 Plane luma_of(const Image8& image) {
   Plane luma(image.width, image.height);
-  const std::uint8_t* rgb = image.rgb.data();
-  for (float& y : luma.values) {
-    y = 0.299f * rgb[0] + 0.587f * rgb[1] + 0.114f * rgb[2];
-    rgb += 3;
-  }
+  for_each_row(image.height, [&](int y) {
+    const std::uint8_t* rgb = image.rgb.data() + static_cast<std::size_t>(y) * image.width * 3;
+    float* out = luma.row(y);
+    for (int x = 0; x < image.width; ++x, rgb += 3)
+      out[x] = 0.299f * rgb[0] + 0.587f * rgb[1] + 0.114f * rgb[2];
+  });
   return luma;
 }
 
 template <typename Combine>
 Plane combined(const Plane& a, const Plane& b, Combine combine) {
   Plane out(a.width, a.height);
-  std::transform(a.values.begin(), a.values.end(), b.values.begin(), out.values.begin(), combine);
+  for_each_row(a.height,
+               [&](int y) { std::transform(a.row(y), a.row(y) + a.width, b.row(y), out.row(y), combine); });
   return out;
+}
+
+struct LocalMoments {
+  Plane mean_a, mean_b;
+  Plane squares;  ///< blurred a² + b²: only the sum of the two variances is needed
+  Plane product;  ///< blurred a b
+};
+
+LocalMoments local_moments(const Plane& a, const Plane& b) {
+  const Kernel window = gaussian_kernel(1.5, 5);
+  return {blur(a, window), blur(b, window),
+          blur(combined(a, b, [](float x, float y) { return x * x + y * y; }), window),
+          blur(combined(a, b, [](float x, float y) { return x * y; }), window)};
+}
+
+void similarity_row(const LocalMoments& m, int y, float* out) {
+  constexpr float kC1 = 0.01f * 255 * 0.01f * 255, kC2 = 0.03f * 255 * 0.03f * 255;
+  const float *a = m.mean_a.row(y), *b = m.mean_b.row(y), *squares = m.squares.row(y),
+              *product = m.product.row(y);
+  for (int x = 0; x < m.mean_a.width; ++x) {
+    const float means = a[x] * a[x] + b[x] * b[x], cross = a[x] * b[x];
+    const float variances = squares[x] - means, covariance = product[x] - cross;
+    out[x] = (2 * cross + kC1) * (2 * covariance + kC2) / ((means + kC1) * (variances + kC2));
+  }
 }
 
 /// PSNR, largest difference and share of changed pixels, in exact integers.
@@ -67,20 +93,9 @@ double mean(const std::vector<float>& values) {
 double ssim(const Image8& test, const Image8& reference) {
   check_comparable(test, reference);
   if (test.rgb.empty()) return 1;
-  constexpr float kC1 = 0.01f * 255 * 0.01f * 255, kC2 = 0.03f * 255 * 0.03f * 255;
-  const Kernel window = gaussian_kernel(1.5, 5);
-  const Plane a = luma_of(test), b = luma_of(reference);
-  // Only the sum of the two variances is needed, so both squares share one blur.
-  const Plane squares = blur(combined(a, b, [](float x, float y) { return x * x + y * y; }), window);
-  const Plane product = blur(combined(a, b, [](float x, float y) { return x * y; }), window);
-  const Plane mean_a = blur(a, window), mean_b = blur(b, window);
-  Plane similarity(a.width, a.height);
-  for (std::size_t i = 0; i < similarity.values.size(); ++i) {
-    const float ma = mean_a.values[i], mb = mean_b.values[i];
-    const float means = ma * ma + mb * mb, cross = ma * mb;
-    const float variances = squares.values[i] - means, covariance = product.values[i] - cross;
-    similarity.values[i] = (2 * cross + kC1) * (2 * covariance + kC2) / ((means + kC1) * (variances + kC2));
-  }
+  const LocalMoments moments = local_moments(luma_of(test), luma_of(reference));
+  Plane similarity(test.width, test.height);
+  for_each_row(test.height, [&](int y) { similarity_row(moments, y, similarity.row(y)); });
   return mean(similarity.values);
 }
 

@@ -25,7 +25,8 @@ Float4 load4(const float* p) {
   return v;
 }
 
-/// The samples that a kernel meets around an output row: before[k] and after[k] are the rows shifted by -k and +k.
+/// The samples that a kernel meets around an output row: before[k] and after[k] are the rows shifted by -k
+/// and +k.
 struct Taps {
   std::vector<const float*> before, after;
 };
@@ -34,8 +35,7 @@ template <bool kOdd>
 void sum_block(const Taps& taps, const Kernel& kernel, int x, float* out) {
   std::array<Float4, kRegisters> sums{};
   if constexpr (!kOdd)
-    for (int i = 0; i < kRegisters; ++i)
-      sums[i] = load4(taps.before[0] + x + i * kLanes) * kernel.weights[0];
+    for (int i = 0; i < kRegisters; ++i) sums[i] = load4(taps.before[0] + x + i * kLanes) * kernel.weights[0];
   for (int k = 1; k <= kernel.radius(); ++k) {
     const float* before = taps.before[k] + x;
     const float* after = taps.after[k] + x;
@@ -51,7 +51,8 @@ template <bool kOdd>
 void sum_single(const Taps& taps, const Kernel& kernel, int x, float* out) {
   float sum = kOdd ? 0.0f : taps.before[0][x] * kernel.weights[0];
   for (int k = 1; k <= kernel.radius(); ++k)
-    sum += (kOdd ? taps.after[k][x] - taps.before[k][x] : taps.after[k][x] + taps.before[k][x]) * kernel.weights[k];
+    sum += (kOdd ? taps.after[k][x] - taps.before[k][x] : taps.after[k][x] + taps.before[k][x]) *
+           kernel.weights[k];
   out[x] = sum;
 }
 

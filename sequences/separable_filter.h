@@ -6,9 +6,9 @@
 ///   rows:     out(x, y) = Σₖ wₖ · in(x + k, y)      k = -radius … radius
 ///   columns:  out(x, y) = Σₖ wₖ · in(x, y + k)
 ///
-/// Outside the plane the nearest inside sample counts (replicated border). A kernel is even (w₋ₖ = wₖ: blurs, second derivatives) or
-/// odd (w₋ₖ = -wₖ: first derivatives), so that mirrored samples share one multiplication. The order of the sum is fixed: the same bytes
-/// for any number of threads.
+/// Outside the plane the nearest inside sample counts (replicated border). A kernel is even (w₋ₖ = wₖ: blurs,
+/// second derivatives) or odd (w₋ₖ = -wₖ: first derivatives), so that mirrored samples share one
+/// multiplication. The order of the sum is fixed: the same bytes for any number of threads.
 
 #include <cmath>
 #include <functional>
