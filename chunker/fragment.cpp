@@ -67,7 +67,7 @@ void FragmentBuffer::clear(const LatticeBox& box, int max_fragments, MergeTolera
   merge_ = merge;
 }
 
-Added FragmentBuffer::add(int texel, const Fragment& fragment) {
+Added FragmentBuffer::add_to_busy(int texel, const Fragment& fragment) {
   Fragment& base = base_[texel];
   const bool whole = fragment.mask == kFullMask && fragment.opaque();
   if (whole && (base.mask == 0 || nearer_samples(fragment.depth, base.depth) == kFullMask)) {
@@ -133,7 +133,23 @@ Float4 FragmentBuffer::resolve(int texel) const {
   return resolve_opaque(texel);
 }
 
+/// Pieces of one surface side by side, nothing behind: no sample is covered twice, so no depth is asked for.
+bool FragmentBuffer::fill_disjoint(int texel, std::array<Float4, kSamples>& samples) const {
+  if (base_[texel].mask != 0) return false;
+  samples.fill(splat(0));
+  unsigned covered = 0;
+  for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next) {
+    if (covered & pool_[i].mask) return false;
+    covered |= pool_[i].mask;
+    for (unsigned left = pool_[i].mask; left != 0; left &= left - 1)
+      samples[__builtin_ctz(left)] = pool_[i].color;
+  }
+  return true;
+}
+
 Float4 FragmentBuffer::resolve_opaque(int texel) const {
+  std::array<Float4, kSamples> samples;
+  if (fill_disjoint(texel, samples)) return mean_of_samples(samples);
   static const Fragment nothing;
   const Fragment& base = base_[texel];
   std::array<SampleEntry, kSamples> nearest;
@@ -145,7 +161,6 @@ Float4 FragmentBuffer::resolve_opaque(int texel) const {
       const SampleEntry entry{depth_at(pool_[i].depth, s), &pool_[i]};
       if (in_front(entry, nearest[s])) nearest[s] = entry;
     }
-  std::array<Float4, kSamples> samples;
   for (int s = 0; s < kSamples; ++s) samples[s] = nearest[s].surface->color;
   return mean_of_samples(samples);
 }

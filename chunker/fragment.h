@@ -56,7 +56,12 @@ class FragmentBuffer {
   }
 
   /// `fragment` comes after all that were added before.
-  Added add(int texel, const Fragment& fragment);
+  Added add(int texel, const Fragment& fragment) {
+    const bool whole = fragment.mask == kFullMask && fragment.opaque();
+    if (!whole || !is_clear(texel)) return add_to_busy(texel, fragment);
+    base_[texel] = fragment;
+    return Added::BecameBase;
+  }
 
   /// Premultiplied colour of a texel: in each sample front to back, then the mean of the 16.
   Float4 resolve(int texel) const;
@@ -65,6 +70,8 @@ class FragmentBuffer {
   int live_fragments() const { return live_; }
 
  private:
+  Added add_to_busy(int texel, const Fragment& fragment);
+  bool fill_disjoint(int texel, std::array<Float4, kSamples>& samples) const;
   bool merge(Fragment& last, const Fragment& fragment) const;
   void drop_hidden(int texel);
   std::int32_t allocate();

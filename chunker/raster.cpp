@@ -8,7 +8,7 @@ namespace {
 
 Texel encoded(Float4 c) { return encode({c[0], c[1], c[2], c[3]}); }
 
-bool is_nothing(Float4 c) { return c[0] == 0 && c[1] == 0 && c[2] == 0 && c[3] == 0; }
+bool is_nothing(Float4 c) { return c[3] == 0 && c[0] == 0 && c[1] == 0 && c[2] == 0; }
 
 }  // namespace
 
