@@ -4,8 +4,9 @@
 /// The 2-D maps that carry an old picture to a new one [LS97 4, 4.2].
 ///
 /// A `Warp` maps display pixels at the layer's last render (`then`) to display pixels now. Its matrix acts on
-/// homogeneous columns (x, y, 1) and, for the perspective family only, divides by the third component. A homography is the same
-/// under any positive scale; those of the fits are scaled to a denominator of 1 at the centroid of the points then.
+/// homogeneous columns (x, y, 1) and, for the perspective family only, divides by the third component. A
+/// homography is the same under any positive scale; those of the fits are scaled to a denominator of 1 at the
+/// centroid of the points then.
 ///
 ///   translation     isotropic        x/y scale        affine           perspective
 ///   1 0 tx          s 0 tx           a 0 tx           a b tx           a b tx
