@@ -65,29 +65,35 @@ struct TapBounds {
   RectI texels() const { return {rect.x0, rect.y0, rect.x1 + 1, rect.y1 + 1}; }
 };
 
-PixelRange intersection(PixelRange a, PixelRange b) {
-  return {std::max(a.first, b.first), std::min(a.last, b.last)};
+/// The pixels of a run, 0 … columns-1, that touch a sprite.
+PixelRange touching_pixels(const TapMap& map, const TapPosition& start, ivec2 size, int columns) {
+  const TapPosition end{start.x + (columns - 1) * map.step_x, start.y + (columns - 1) * map.step_y};
+  if (touches(start, size) && touches(end, size)) return {0, columns};  // inside a sprite, nearly all
+  const PixelRange x = pixels_touching(start.x, map.step_x, size.x, columns);
+  const PixelRange y = pixels_touching(start.y, map.step_y, size.y, columns);
+  return {std::max(x.first, y.first), std::min(x.last, y.last)};
 }
 
-/// Positions and covered pixels of an affine tile's lines, in sprite coordinates.
+/// The lines of an affine tile, all but the window that they read from.
 struct AffineLines {
-  std::array<TapPosition, kBandLines> start;
-  std::array<PixelRange, kBandLines> pixels;
+  TileJob job;
   std::int64_t pixel_count = 0, line_count = 0;
   TapBounds bounds;
 };
 
 AffineLines affine_lines(const Visible& v, const Tile& tile) {
   AffineLines lines;
+  lines.job.step_x = static_cast<std::uint32_t>(v.map.step_x);
+  lines.job.step_y = static_cast<std::uint32_t>(v.map.step_y);
+  lines.job.multiplier = v.multiplier;
   const ivec2 size = v.sprite->size_px();
   for (int row = 0; row < tile.lines(); ++row) {
     const auto start = run_start(v.map, tile.x, tile.y + row);
     if (!start) continue;
-    const PixelRange range = intersection(pixels_touching(start->x, v.map.step_x, size.x, tile.columns()),
-                                          pixels_touching(start->y, v.map.step_y, size.y, tile.columns()));
+    const PixelRange range = touching_pixels(v.map, *start, size, tile.columns());
     if (range.empty()) continue;
-    lines.start[row] = *start;
-    lines.pixels[row] = range;
+    lines.job.lines[row] = {static_cast<std::uint32_t>(start->x), static_cast<std::uint32_t>(start->y),
+                            range};
     lines.pixel_count += range.last - range.first;
     ++lines.line_count;
     for (const int k : {range.first, range.last - 1}) {
@@ -130,6 +136,14 @@ std::uint64_t texel_pair(Texel left, Texel right) {
   return packed;
 }
 
+/// Also pixels that show nothing need weights that add up to one.
+Footprints clear_footprints() {
+  Footprints f{};
+  std::fill_n(f.weight_x, kRunPixels, weight_pair(0));
+  std::fill_n(f.weight_y, kRunPixels, weight_pair(0));
+  return f;
+}
+
 /// Two texel rows under a footprint, from a window or straight from the chunks.
 struct WindowSource {
   const Window& window;
@@ -146,8 +160,9 @@ struct SpriteSource {
 template <typename Source>
 void blend_pixels(const Source& source, const PixelTaps& taps, const Multiplier& multiplier,
                   const Tile& tile) {
+  const Footprints nothing = clear_footprints();
   for (int row = 0; row < tile.lines(); ++row) {
-    Footprints f{};
+    Footprints f = nothing;
     for (int k = 0; k < kRunPixels; ++k) {
       const TapPosition p = taps.at[row * kRunPixels + k];
       if (p.x == PixelTaps::kNothing) continue;
@@ -216,36 +231,24 @@ class BandCompositor {
   }
 
   void lay_affine(const Visible& v, const Tile& tile) {
-    const AffineLines lines = affine_lines(v, tile);
+    AffineLines lines = affine_lines(v, tile);
     if (!count(lines, *v.sprite)) return;
-    if (window_.gather(*v.sprite, lines.bounds.rect)) {
-      blend_tile(tile_job(v, lines), tile.pixels);
-    } else {
-      lay_minified(v, lines, tile);
-    }
+    if (!window_.gather(*v.sprite, lines.bounds.rect)) return lay_minified(v, lines.job, tile);
+    lines.job.window = window_.texels();
+    lines.job.stride = static_cast<std::uint32_t>(window_.stride());
+    lines.job.origin_x = static_cast<std::uint32_t>(window_.origin().x) << 16;
+    lines.job.origin_y = static_cast<std::uint32_t>(window_.origin().y) << 16;
+    blend_tile(lines.job, tile.pixels);
   }
 
-  TileJob tile_job(const Visible& v, const AffineLines& lines) const {
-    TileJob job;
-    job.window = window_.texels();
-    job.stride = static_cast<std::uint32_t>(window_.stride());
-    job.step_x = static_cast<std::uint32_t>(v.map.step_x);
-    job.step_y = static_cast<std::uint32_t>(v.map.step_y);
-    job.multiplier = v.multiplier;
-    const std::int64_t origin_x = static_cast<std::int64_t>(window_.origin().x) * 65536;
-    const std::int64_t origin_y = static_cast<std::int64_t>(window_.origin().y) * 65536;
-    for (int row = 0; row < kBandLines; ++row) {
-      job.lines[row] = {static_cast<std::uint32_t>(lines.start[row].x - origin_x),
-                        static_cast<std::uint32_t>(lines.start[row].y - origin_y), lines.pixels[row]};
-    }
-    return job;
-  }
-
-  void lay_minified(const Visible& v, const AffineLines& lines, const Tile& tile) {
+  /// Without a window. Positions of pixels that touch fit 32 bits with their sign.
+  void lay_minified(const Visible& v, const TileJob& job, const Tile& tile) {
     PixelTaps taps;
     locate_pixels(tile, taps, [&](int row, int k) -> std::optional<TapPosition> {
-      if (k < lines.pixels[row].first || k >= lines.pixels[row].last) return std::nullopt;
-      return TapPosition{lines.start[row].x + k * v.map.step_x, lines.start[row].y + k * v.map.step_y};
+      const LineJob& line = job.lines[row];
+      if (k < line.pixels.first || k >= line.pixels.last) return std::nullopt;
+      return TapPosition{static_cast<std::int32_t>(line.x + k * job.step_x),
+                         static_cast<std::int32_t>(line.y + k * job.step_y)};
     });
     blend_pixels(SpriteSource{*v.sprite}, taps, v.multiplier, tile);
   }
@@ -289,7 +292,8 @@ CompositeCounters& CompositeCounters::operator+=(const CompositeCounters& o) {
   return *this;
 }
 
-CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_px, layers::vec3 background) {
+CompositeCounters composite_into(Frame& frame, std::span<const PlacedSprite> sprites, ivec2 display_px,
+                                 layers::vec3 background) {
   TALISMAN_CHECK_GE(display_px.x, 0);
   TALISMAN_CHECK_GE(display_px.y, 0);
   const std::vector<Visible> visible = visible_sprites(sprites);
@@ -297,18 +301,25 @@ CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_p
   PackedPixel packed_background;
   std::memcpy(&packed_background, &below, sizeof below);
 
-  CompositeResult result;
-  result.frame = {display_px.x, display_px.y,
-                  std::vector<Linear16>(static_cast<std::size_t>(display_px.x) * display_px.y)};
+  frame.width = display_px.x;
+  frame.height = display_px.y;
+  frame.pixels.resize(static_cast<std::size_t>(display_px.x) * display_px.y);
   const int bands = (display_px.y + kBandLines - 1) / kBandLines;
   std::vector<CompositeCounters> counters(bands);
   tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
     for (int band = range.begin(); band != range.end(); ++band) {
-      const auto compositor = std::make_unique<BandCompositor>(visible, packed_background, result.frame);
+      const auto compositor = std::make_unique<BandCompositor>(visible, packed_background, frame);
       counters[band] = compositor->run(band);
     }
   });
-  for (const CompositeCounters& c : counters) result.counters += c;
+  CompositeCounters sum;
+  for (const CompositeCounters& c : counters) sum += c;
+  return sum;
+}
+
+CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_px, layers::vec3 background) {
+  CompositeResult result;
+  result.counters = composite_into(result.frame, sprites, display_px, background);
   return result;
 }
 

@@ -67,11 +67,6 @@ void FragmentBuffer::clear(const LatticeBox& box, int max_fragments, MergeTolera
   merge_ = merge;
 }
 
-bool FragmentBuffer::hides(int texel, std::uint16_t mask, const DepthPlane& depth) const {
-  const Fragment& base = base_[texel];
-  return base.mask != 0 && (nearer_samples(depth, base.depth) & mask) == 0;
-}
-
 Added FragmentBuffer::add(int texel, const Fragment& fragment) {
   Fragment& base = base_[texel];
   const bool whole = fragment.mask == kFullMask && fragment.opaque();

@@ -37,8 +37,7 @@ struct MergeTolerance {
   bool any() const { return depth > 0 || color > 0; }
 };
 
-/// Samples where a is strictly nearer than b. `frontness` answers the common cases (all, none) by bounds;
-/// their rounding slack is part of the bounds, so the answer is that of comparing all 16 depths.
+/// Samples where a is strictly nearer than b.
 std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b);
 
 enum class Added { Stored, Merged, BecameBase, Refused };
@@ -51,13 +50,17 @@ class FragmentBuffer {
   void clear(const LatticeBox& box, int max_fragments, MergeTolerance merge);
 
   /// True if the base hides all of `mask` of a surface that comes later.
-  bool hides(int texel, std::uint16_t mask, const DepthPlane& depth) const;
+  bool hides(int texel, std::uint16_t mask, const DepthPlane& depth) const {
+    const Fragment& base = base_[texel];
+    return base.mask != 0 && (nearer_samples(depth, base.depth) & mask) == 0;
+  }
 
   /// `fragment` comes after all that were added before.
   Added add(int texel, const Fragment& fragment);
 
   /// Premultiplied colour of a texel: in each sample front to back, then the mean of the 16.
   Float4 resolve(int texel) const;
+  bool is_clear(int texel) const { return base_[texel].mask == 0 && first_[texel] < 0; }
 
   int live_fragments() const { return live_; }
 

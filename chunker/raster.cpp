@@ -32,7 +32,8 @@ void ChunkRenderer::draw_box(std::span<const std::uint32_t> triangles, const Lat
   }
   for (int y = box.y0; y <= box.y1; ++y)
     for (int x = box.x0; x <= box.x1; ++x)
-      out.texels[y * kChunkSize + x] = encoded(buffer_.resolve(y * kChunkSize + x));
+      if (!buffer_.is_clear(y * kChunkSize + x))
+        out.texels[y * kChunkSize + x] = encoded(buffer_.resolve(y * kChunkSize + x));
 }
 
 void ChunkRenderer::draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box,
@@ -62,47 +63,52 @@ bool ChunkRenderer::draw_triangle(std::uint32_t order, const LatticeBox& box) {
   const EdgeSet edges = edges_of(t, origin_.x, origin_.y);
   if (!may_cover(edges, texels)) return true;
   cover(edges, texels, coverage_);
+  const Gradients gradients = gradients_of(t);
+  gather_visible(t, gradients, texels);
+  if (batch_.count == 0) return true;
   const Batch& batch = list_.batches[t.batch];
-  const bool textured = batch.shader.pyramid != nullptr;
-  if (batch.shader.per_pixel)
-    return textured ? draw_covered<true, true>(t, batch, order, texels)
-                    : draw_covered<false, true>(t, batch, order, texels);
-  return textured ? draw_covered<true, false>(t, batch, order, texels)
-                  : draw_covered<false, false>(t, batch, order, texels);
+  const Shader& shader = batch.shader;
+  shade_batch(shader, interpolator_of(t, gradients, batch.attributes.data(), shader.layout.count), batch_);
+  counters_.pixels_shaded += batch_.count;
+  counters_.texture_samples += shader.pyramid != nullptr ? batch_.count : 0;
+  return store_fragments(order, gradients);
+}
+
+void ChunkRenderer::gather_visible(const Triangle& t, const Gradients& gradients, const LatticeBox& box) {
+  int count = 0;
+  for (int y = box.y0; y <= box.y1; ++y) {
+    const float dy = from_corner(origin_.y + y, t.y[0]);
+    for (std::uint32_t left = coverage_.touched[y]; left != 0; left &= left - 1) {
+      const int x = __builtin_ctz(left), texel = y * kChunkSize + x;
+      const bool full = coverage_.full[y] >> x & 1;
+      const std::uint16_t mask = full ? kFullMask : coverage_.mask[texel];
+      const DepthPlane depth = depth_plane(t, gradients, origin_.x + x, origin_.y + y);
+      if (buffer_.hides(texel, mask, depth)) continue;
+      const Centroid at = full ? Centroid{0.5f, 0.5f} : centroid_of(mask);
+      texel_[count] = static_cast<std::uint16_t>(texel);
+      mask_[count] = mask;
+      depth_[count] = depth.z;
+      batch_.dx[count] = from_corner(origin_.x + x, t.x[0]) + at.x;
+      batch_.dy[count] = dy + at.y;
+      ++count;
+    }
+  }
+  batch_.count = count;
 }
 
 /// False if the fragments did not fit.
-template <bool kTextured, bool kPerPixel>
-bool ChunkRenderer::draw_covered(const Triangle& t, const Batch& batch, std::uint32_t order,
-                                 const LatticeBox& box) {
-  const Gradients gradients = gradients_of(t);
-  Interpolator interpolator;
-  bool prepared = false;
-  std::int64_t shaded = 0;
-  bool fits = true;
-  for (int y = box.y0; y <= box.y1 && fits; ++y) {
-    const float dy = from_corner(origin_.y + y, t.y[0]);
-    for (std::uint32_t left = coverage_.touched[y]; left != 0 && fits; left &= left - 1) {
-      const int x = __builtin_ctz(left), texel = y * kChunkSize + x;
-      Fragment fragment;
-      fragment.order = order;
-      fragment.mask = coverage_.full[y] >> x & 1 ? kFullMask : coverage_.mask[texel];
-      fragment.depth = depth_plane(t, gradients, origin_.x + x, origin_.y + y);
-      if (buffer_.hides(texel, fragment.mask, fragment.depth)) continue;
-      if (!prepared) {
-        interpolator = interpolator_of(t, gradients, batch.attributes.data(), batch.shader.layout.count);
-        prepared = true;
-      }
-      const Centroid at = centroid_of(fragment.mask);
-      const float dx = from_corner(origin_.x + x, t.x[0]);
-      fragment.color = shade<kTextured, kPerPixel>(batch.shader, interpolator, dx + at.x, dy + at.y);
-      ++shaded;
-      if (!is_nothing(fragment.color)) fits = add(texel, fragment);
-    }
+bool ChunkRenderer::store_fragments(std::uint32_t order, const Gradients& gradients) {
+  Fragment fragment;
+  fragment.order = order;
+  fragment.depth.dx = static_cast<float>(gradients.depth_x);
+  fragment.depth.dy = static_cast<float>(gradients.depth_y);
+  for (int i = 0; i < batch_.count; ++i) {
+    fragment.mask = mask_[i];
+    fragment.depth.z = depth_[i];
+    fragment.color = batch_.color[i];
+    if (!is_nothing(fragment.color) && !add(texel_[i], fragment)) return false;
   }
-  counters_.pixels_shaded += shaded;
-  if constexpr (kTextured) counters_.texture_samples += shaded;
-  return fits;
+  return true;
 }
 
 bool ChunkRenderer::add(int texel, const Fragment& fragment) {

@@ -8,6 +8,7 @@
 #include "chunker/coverage.h"
 #include "chunker/draw_list.h"
 #include "chunker/fragment.h"
+#include "chunker/shade_batch.h"
 #include "chunker/sprite.h"
 
 namespace talisman::chunker {
@@ -30,8 +31,8 @@ class ChunkRenderer {
   void draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out);
   bool draw_triangles(std::span<const std::uint32_t> triangles, const LatticeBox& box);
   bool draw_triangle(std::uint32_t order, const LatticeBox& box);
-  template <bool kTextured, bool kPerPixel>
-  bool draw_covered(const Triangle& t, const Batch& batch, std::uint32_t order, const LatticeBox& box);
+  void gather_visible(const Triangle& t, const Gradients& gradients, const LatticeBox& box);
+  bool store_fragments(std::uint32_t order, const Gradients& gradients);
   bool add(int texel, const Fragment& fragment);
 
   const DrawList& list_;
@@ -39,6 +40,10 @@ class ChunkRenderer {
   layers::ivec2 origin_{0, 0};
   FragmentBuffer buffer_;
   Coverage coverage_;
+  ShadeBatch batch_;  ///< the visible texels of one triangle, and beside it
+  std::array<std::uint16_t, ShadeBatch::kPoints> texel_;  ///< which they are,
+  std::array<std::uint16_t, ShadeBatch::kPoints> mask_;   ///< their coverage,
+  std::array<float, ShadeBatch::kPoints> depth_;          ///< and their depth at the centre
   RenderCounters counters_;
 };
 

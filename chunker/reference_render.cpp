@@ -42,11 +42,7 @@ Float4 color_of(const DrawList& list, const Triangle& t, std::uint16_t mask, int
       interpolator_of(t, gradients_of(t), batch.attributes.data(), batch.shader.layout.count);
   const Centroid at = centroid_of(mask);
   const float dx = from_corner(x, t.x[0]) + at.x, dy = from_corner(y, t.y[0]) + at.y;
-  if (batch.shader.pyramid != nullptr)
-    return batch.shader.per_pixel ? shade<true, true>(batch.shader, interpolator, dx, dy)
-                                  : shade<true, false>(batch.shader, interpolator, dx, dy);
-  return batch.shader.per_pixel ? shade<false, true>(batch.shader, interpolator, dx, dy)
-                                : shade<false, false>(batch.shader, interpolator, dx, dy);
+  return shade(batch.shader, interpolator, dx, dy);
 }
 
 Float4 composite_front_to_back(std::vector<Surface>& surfaces) {

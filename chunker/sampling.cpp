@@ -12,13 +12,8 @@ using layers::dmat3;
 using layers::dvec2;
 using layers::dvec3;
 
-constexpr double kMaxStep = 1073741824.0;         // 2^30 texels per pixel
-constexpr double kMaxPosition = 1099511627776.0;  // 2^40 texels; times 2^16 it is still exact in an int64
-constexpr double kMaxEntry = 1e100;               // so that no sum of products overflows
-
-double along(const dvec3& row, double x, double y) { return row.x * x + row.y * y + row.z; }
-
-std::int64_t fixed16(double v) { return static_cast<std::int64_t>(std::floor(v * 65536 + 0.5)); }
+constexpr double kMaxStep = 1073741824.0;  // 2^30 texels per pixel
+constexpr double kMaxEntry = 1e100;        // so that no sum of products overflows
 
 bool within(const dvec3& v, double limit) {  // false for NaN
   return std::fabs(v.x) <= limit && std::fabs(v.y) <= limit && std::fabs(v.z) <= limit;
@@ -63,7 +58,7 @@ std::optional<TapMap> perspective_map(const dmat3& m) {
 std::optional<std::int64_t> rounded_tap(double texels, int size) {
   const double v = texels * 256 + 0.5;
   if (!(v >= -255 && v < 256.0 * size)) return std::nullopt;
-  return static_cast<std::int64_t>(std::floor(v)) << 8;
+  return floor_to_int(v) << 8;
 }
 
 /// Keeps in [lo, hi] the x for which a·x + b·y + c ≥ 0 holds for some y of [y0, y1].
@@ -82,14 +77,6 @@ std::optional<TapMap> tap_map(const dmat3& screen_from_sprite) {
     if (!within(screen_from_sprite[column], kMaxEntry)) return std::nullopt;
   }
   return is_affine(screen_from_sprite) ? affine_map(screen_from_sprite) : perspective_map(screen_from_sprite);
-}
-
-std::optional<TapPosition> run_start(const TapMap& map, int run_x, int y) {
-  const double x_texels = along(map.x, run_x + 0.5, y + 0.5);
-  const double y_texels = along(map.y, run_x + 0.5, y + 0.5);
-  if (!within({x_texels, y_texels, 0}, kMaxPosition)) return std::nullopt;
-  constexpr std::int64_t kHalfWeight = 128;  // rounds to the nearest weight
-  return TapPosition{fixed16(x_texels) + kHalfWeight, fixed16(y_texels) + kHalfWeight};
 }
 
 std::optional<TapPosition> perspective_tap(const TapMap& map, int x, int y, layers::ivec2 size) {

@@ -16,6 +16,7 @@
 /// double for every pixel; pixels whose denominator is not positive show nothing. Both then round to nearest
 /// 1/256 texel, the resolution of the weights.
 
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -57,9 +58,26 @@ struct TapMap {
 /// Empty when nothing can be shown: not finite, singular, or minified more than 2³⁰-fold.
 std::optional<TapMap> tap_map(const layers::dmat3& screen_from_sprite);
 
-/// Affine: position at the pixel (run_x, y). Empty when the run is so far away (2⁴⁰ texels) that no pixel of
-/// it can touch a sprite.
-std::optional<TapPosition> run_start(const TapMap& map, int run_x, int y);
+/// ⌊v⌋ for |v| < 2⁶³, without the call that std::floor is on older instruction sets.
+inline std::int64_t floor_to_int(double v) {
+  const auto truncated = static_cast<std::int64_t>(v);
+  return truncated - (v < static_cast<double>(truncated));
+}
+
+inline std::int64_t fixed16(double v) { return floor_to_int(v * 65536 + 0.5); }
+
+/// row · (x, y, 1), summed in this order.
+inline double along(const layers::dvec3& row, double x, double y) { return row.x * x + row.y * y + row.z; }
+
+/// Affine: position at the pixel (run_x, y). Empty when the run is so far away that no pixel of it can touch
+/// a sprite.
+inline std::optional<TapPosition> run_start(const TapMap& map, int run_x, int y) {
+  constexpr double kMaxPosition = 1099511627776.0;  // 2⁴⁰ texels; times 2¹⁶ it is still exact in an int64
+  constexpr std::int64_t kHalfWeight = 128;         // rounds to the nearest weight
+  const double x_texels = along(map.x, run_x + 0.5, y + 0.5), y_texels = along(map.y, run_x + 0.5, y + 0.5);
+  if (!(std::fabs(x_texels) <= kMaxPosition && std::fabs(y_texels) <= kMaxPosition)) return std::nullopt;
+  return TapPosition{fixed16(x_texels) + kHalfWeight, fixed16(y_texels) + kHalfWeight};
+}
 
 /// Perspective: position at the pixel (x, y), empty when it does not touch a sprite of `size` or its
 /// denominator is not positive.

@@ -51,6 +51,26 @@ void add_light(const Shader& shader, Float4 normal, Float4 to_eye, Float4 to_lig
   sum.specular += color * shader.specular * splat(power_of_unit(lobe, shader.shininess));
 }
 
+Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at) {
+  if (shader.pyramid == nullptr) return shader.texel;
+  const int uv = shader.layout.uv;
+  const Float4 coordinate = attribute(t, at, uv);
+  const Pyramid& pyramid = *shader.pyramid;
+  if (!shader.mipmaps) return bilinear(pyramid.levels[0], coordinate[0], coordinate[1]);
+  return trilinear(pyramid, coordinate[0], coordinate[1], texture_footprint(t, at, uv, pyramid.levels[0]));
+}
+
+/// Diffuse (times base and vertex colour) and specular at a pixel.
+Lighting lighting_at(const Shader& shader, const Interpolator& t, const Lambda& at) {
+  const AttributeLayout& layout = shader.layout;
+  const Float4 color = layout.color >= 0 ? attribute(t, at, layout.color) : shader.base;
+  if (!shader.per_pixel) return {color, layout.specular >= 0 ? attribute(t, at, layout.specular) : splat(0)};
+  const Float4 normal = normalized3(attribute(t, at, layout.normal));
+  const Float4 position = layout.position >= 0 ? attribute(t, at, layout.position) : splat(0);
+  const Lighting lighting = light(shader, normal, position);
+  return {color * lighting.diffuse, lighting.specular};
+}
+
 }  // namespace
 
 LightSet light_set(const layers::SceneFrame& frame) {
@@ -124,6 +144,11 @@ void write_attributes(const Shader& shader, const ShadePoint& point, Float4* att
   if (layout.color >= 0) attributes[layout.color] = color;
   if (layout.normal >= 0) attributes[layout.normal] = point.normal;
   if (layout.position >= 0) attributes[layout.position] = point.position;
+}
+
+Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy) {
+  const Lambda at = lambda_at(t, dx, dy);
+  return combined(shader, texel_at(shader, t, at), lighting_at(shader, t, at));
 }
 
 }  // namespace talisman::chunker

@@ -129,40 +129,15 @@ inline float texture_footprint(const Interpolator& t, const Lambda& at, int uv, 
   return std::max(x[0] * x[0] + x[1] * x[1], y[0] * y[0] + y[1] * y[1]);
 }
 
-template <bool kTextured>
-Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at) {
-  if constexpr (!kTextured) return shader.texel;
-  const int uv = shader.layout.uv;
-  const Float4 coordinate = attribute(t, at, uv);
-  const Pyramid& pyramid = *shader.pyramid;
-  if (!shader.mipmaps) return bilinear(pyramid.levels[0], coordinate[0], coordinate[1]);
-  return trilinear(pyramid, coordinate[0], coordinate[1], texture_footprint(t, at, uv, pyramid.levels[0]));
-}
-
-/// Diffuse (times base and vertex colour) and specular at a pixel.
-template <bool kPerPixel>
-Lighting lighting_at(const Shader& shader, const Interpolator& t, const Lambda& at) {
-  const AttributeLayout& layout = shader.layout;
-  const Float4 color = layout.color >= 0 ? attribute(t, at, layout.color) : shader.base;
-  if constexpr (kPerPixel) {
-    const Float4 normal = normalized3(attribute(t, at, layout.normal));
-    const Float4 position = layout.position >= 0 ? attribute(t, at, layout.position) : splat(0);
-    const Lighting lighting = light(shader, normal, position);
-    return {color * lighting.diffuse, lighting.specular};
-  } else {
-    return {color, layout.specular >= 0 ? attribute(t, at, layout.specular) : splat(0)};
-  }
-}
-
-/// Premultiplied colour at (dx, dy) pixels from the triangle's first corner.
-template <bool kTextured, bool kPerPixel>
-Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy) {
-  const Lambda at = lambda_at(t, dx, dy);
-  const Float4 texel = texel_at<kTextured>(shader, t, at);
-  const Lighting lighting = lighting_at<kPerPixel>(shader, t, at);
+/// The last line of the formula on top.
+inline Float4 combined(const Shader& shader, Float4 texel, const Lighting& lighting) {
   Float4 color = lighting.diffuse * texel + (lighting.specular + shader.emissive) * splat(texel[3]);
   color[3] = texel[3];
   return color * splat(shader.opacity);
 }
+
+/// Premultiplied colour at (dx, dy) texels from the triangle's first corner: the definition of what
+/// shade_batch does.
+Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy);
 
 }  // namespace talisman::chunker

@@ -297,8 +297,10 @@ void blend_lines(const TileJob& job, PackedPixel* tile) {
   const auto multiplier = multiplier_lanes(job.multiplier);
   Footprints footprints;
   for (int row = 0; row < kBandLines; ++row) {
-    const LineJob& line = job.lines[row];
+    LineJob line = job.lines[row];
     if (line.pixels.empty()) continue;
+    line.x -= job.origin_x;
+    line.y -= job.origin_y;
     PackedPixel* destination = tile + row * kRunPixels;
     if (on_lattice(job, line)) {
       const std::ptrdiff_t row_origin = static_cast<std::ptrdiff_t>(line.y >> 16) * job.stride;

@@ -33,7 +33,8 @@ struct Multiplier {
   bool is_zero() const { return m == Linear16{}; }
 };
 
-/// The 2×2 texels under each pixel of a run. Pixels that show nothing have zero texels.
+/// The 2×2 texels under each pixel of a run. Pixels that show nothing have zero texels, and weights that add
+/// up to 256 all the same.
 struct Footprints {
   alignas(64) std::uint64_t top[kRunPixels];  ///< two texels side by side, left one in the low half
   alignas(64) std::uint64_t bottom[kRunPixels];
@@ -43,20 +44,21 @@ struct Footprints {
 
 inline std::uint32_t weight_pair(int w) { return static_cast<std::uint32_t>(256 - w + (w << 16)); }
 
-/// One line of a 32×32 display tile under an affine map. Positions are 16.16 modulo 2³², relative to the
-/// window.
+/// One line of a 32×32 display tile under an affine map.
 struct LineJob {
-  std::uint32_t x = 0, y = 0;  ///< at the first pixel of the run
+  std::uint32_t x = 0, y = 0;  ///< position at the first pixel of the run, 16.16 modulo 2³²: exact again at
+                               ///< the pixels that touch
   PixelRange pixels;           ///< those that touch the sprite; empty: the line is skipped
 };
 
-/// An affine tile: a window of texels that holds every footprint of the tile, and its lines.
+/// An affine tile: its lines, and a window of texels that holds every footprint.
 struct TileJob {
-  const Texel* window = nullptr;
-  std::uint32_t stride = 0;  ///< texels per row of the window
-  std::uint32_t step_x = 0, step_y = 0;
   std::array<LineJob, kBandLines> lines;
+  std::uint32_t step_x = 0, step_y = 0;
   Multiplier multiplier;
+  const Texel* window = nullptr;
+  std::uint32_t stride = 0;                  ///< texels per row of the window
+  std::uint32_t origin_x = 0, origin_y = 0;  ///< position of the window's first texel, as those of the lines
 };
 
 /// Lays a tile's lines over `tile` (kBandLines rows of kRunPixels pixels).

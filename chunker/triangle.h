@@ -132,15 +132,30 @@ struct Centroid {
   float x, y;
 };
 
+/// Samples sit at odd eighths, 1, 3, 5, 7. Per byte of a mask (two rows of samples): their number, and the
+/// sums of their x and y.
+struct ByteSums {
+  std::uint8_t count = 0, x = 0, y = 0;
+};
+
+inline constexpr std::array<ByteSums, 256> kByteSums = [] {
+  std::array<ByteSums, 256> table{};
+  for (int byte = 0; byte < 256; ++byte)
+    for (int s = 0; s < 8; ++s)
+      if (byte >> s & 1) {
+        ++table[byte].count;
+        table[byte].x = static_cast<std::uint8_t>(table[byte].x + 2 * (s & 3) + 1);
+        table[byte].y = static_cast<std::uint8_t>(table[byte].y + 2 * (s >> 2) + 1);
+      }
+  return table;
+}();
+
 inline Centroid centroid_of(std::uint16_t mask) {
-  if (mask == kFullMask) return {0.5f, 0.5f};
-  const auto bits = [mask](unsigned m) { return __builtin_popcount(mask & m); };
-  const int n = bits(kFullMask);
-  // Samples sit at odd eighths: 1, 3, 5, 7.
-  const int x = bits(0x1111) + 3 * bits(0x2222) + 5 * bits(0x4444) + 7 * bits(0x8888);
-  const int y = bits(0x000f) + 3 * bits(0x00f0) + 5 * bits(0x0f00) + 7 * bits(0xf000);
-  const float r = 0.125f / static_cast<float>(n);
-  return {static_cast<float>(x) * r, static_cast<float>(y) * r};
+  const ByteSums &upper = kByteSums[mask & 0xff], &lower = kByteSums[mask >> 8];
+  const float r = 0.125f / static_cast<float>(upper.count + lower.count);
+  // The lower two rows lie four eighths further down.
+  return {static_cast<float>(upper.x + lower.x) * r,
+          static_cast<float>(upper.y + lower.y + 4 * lower.count) * r};
 }
 
 }  // namespace talisman::chunker

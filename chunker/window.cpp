@@ -5,6 +5,12 @@
 #include <cstring>
 
 namespace talisman::chunker {
+namespace {
+
+constexpr int kPieceShift = 4;
+constexpr int kPieceTexels = 1 << kPieceShift;
+
+}  // namespace
 
 static_assert(kChunkSize == 32, "chunk_of() shifts by five");
 
@@ -29,30 +35,30 @@ bool is_clear(const Sprite& sprite, const layers::RectI& texels) {
 }
 
 bool Window::gather(const Sprite& sprite, const layers::RectI& texels) {
-  const int first_column = chunk_of(texels.x0), last_column = chunk_of(texels.x1);
+  const int first_piece = texels.x0 >> kPieceShift, last_piece = texels.x1 >> kPieceShift;
   const layers::RectI rows{0, texels.y0, 0, texels.y1 + 1};
-  const std::int64_t stride = (static_cast<std::int64_t>(last_column) - first_column + 1) * kChunkSize;
+  const std::int64_t stride = (static_cast<std::int64_t>(last_piece) - first_piece + 1) * kPieceTexels;
   if (stride * rows.height() > kMaxTexels) return false;
   stride_ = static_cast<int>(stride);
-  origin_ = {first_column * kChunkSize, rows.y0};
+  origin_ = {first_piece * kPieceTexels, rows.y0};
   for (int row = chunk_of(rows.y0); row <= chunk_of(rows.y1 - 1); ++row) {
-    for (int column = first_column; column <= last_column; ++column) {
-      gather_chunk(chunk_or_clear(sprite, column, row), row, (column - first_column) * kChunkSize, rows);
+    for (int piece = first_piece; piece <= last_piece; ++piece) {
+      gather_piece(chunk_or_clear(sprite, chunk_of(piece * kPieceTexels), row), row, piece, rows);
     }
   }
   return true;
 }
 
-void Window::gather_chunk(const Chunk* chunk, int chunk_row, int column, layers::RectI rows) {
-  constexpr std::size_t kRowBytes = kChunkSize * sizeof(Texel);
-  const int top = chunk_row * kChunkSize;
+void Window::gather_piece(const Chunk* chunk, int chunk_row, int piece, layers::RectI rows) {
+  const int top = chunk_row * kChunkSize, x = piece * kPieceTexels;
   const int first = std::max(rows.y0, top), last = std::min(rows.y1, top + kChunkSize);
-  Texel* target = texels_.data() + static_cast<std::ptrdiff_t>(first - rows.y0) * stride_ + column;
+  Texel* target = texels_.data() + static_cast<std::ptrdiff_t>(first - rows.y0) * stride_ + (x - origin_.x);
+  const int column = x & (kChunkSize - 1);
   for (int y = first; y < last; ++y, target += stride_) {
     if (chunk) {
-      std::memcpy(target, chunk->texels + (y - top) * kChunkSize, kRowBytes);
+      std::memcpy(target, chunk->texels + (y - top) * kChunkSize + column, kPieceTexels * sizeof(Texel));
     } else {
-      std::fill_n(target, kChunkSize, Texel{});
+      std::fill_n(target, kPieceTexels, Texel{});
     }
   }
 }

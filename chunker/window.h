@@ -28,7 +28,7 @@ class Window {
   layers::ivec2 origin() const { return origin_; }  ///< sprite texel of texels()[0]
 
  private:
-  void gather_chunk(const Chunk* chunk, int chunk_row, int column, layers::RectI rows);
+  void gather_piece(const Chunk* chunk, int chunk_row, int piece, layers::RectI rows);
 
   alignas(64) std::array<Texel, kMaxTexels> texels_;
   int stride_ = 0;

@@ -4,12 +4,15 @@
 /// How wrong is the old sprite, warped, for the frame now? [LS97 5]
 ///
 /// Geometric:  F = maxᵢ ‖pᵢ - W p̂ᵢ‖, pixels, best 0 [LS97 5.1].
-/// Sampling:   singular values of the Jacobian of the map from sprite to display, [LS97 5.3]: how many display pixels one
+/// Sampling:   singular values of the Jacobian of the map from sprite to display, [LS97 5.3]: how many
+/// display pixels one
 ///             texel is stretched or squeezed to; no unit, best 1.
 /// Visibility: how far a side at which the sprite was cut off has come into view, pixels, best 0 [LS97 5.4].
 ///
-/// Every fiducial is at its best at rest and says where on the display its worst case is. A fiducial that cannot
-/// matter is not computed: `computed` is false and `why_not` says so.
+/// No figure is ever non-finite: what is unknown or unbounded is warp::kHugePx.
+///
+/// Every fiducial is at its best at rest and says where on the display its worst case is. A fiducial that
+/// cannot matter is not computed: `computed` is false and `why_not` says so.
 
 #include <string_view>
 
@@ -22,22 +25,25 @@ namespace talisman::fiducials {
 using layers::dvec2;
 
 struct Geometric {
-  double px = 0;
-  dvec2 where_px{0, 0};     ///< display position now of the worst characteristic point
-  int point = -1;           ///< index into the correspondences; -1: none
+  double px =
+      0;  ///< kHugePx if the fit is not usable, or nothing could be matched although the layer is in view
+  dvec2 where_px{0, 0};  ///< display position now of the worst characteristic point
+  int point = -1;        ///< index into the correspondences; -1: none
 };
 
 struct Sampling {
-  double magnification = 1;   ///< largest singular value over the sprite, relative to the sprite as it was rendered; ≥ 0
-  double minification = 1;    ///< smallest singular value, likewise
-  double anisotropy = 1;      ///< largest ratio of the two at one place, ≥ 1
+  double magnification =
+      1;  ///< largest singular value over the sprite, relative to the sprite as it was rendered; ≥ 0
+  double minification = 1;  ///< smallest singular value, likewise
+  double anisotropy = 1;    ///< largest ratio of the two at one place, ≥ 1
   dvec2 where_px{0, 0};
 };
 
 struct Visibility {
   bool computed = false;
   std::string_view why_not = "";
-  double uncovered_px = 0;    ///< depth to which a cut side has moved inside the display where the layer has content
+  double uncovered_px =
+      0;  ///< depth to which a cut side has moved inside the display where the layer has content
   dvec2 where_px{0, 0};
 };
 
@@ -47,14 +53,23 @@ struct Report {
   Visibility visibility;
 };
 
-/// Singular values (largest first) of the 2×2 matrix | a b ; c d |, closed form [Blinn 96].
+/// Singular values (largest first) of the 2×2 matrix | a b ; c d |, closed form [Blinn 96]:
+///   σ₁ = (√((a + d)² + (c - b)²) + √((a - d)² + (c + b)²)) / 2,     σ₂ = |a d - b c| / σ₁
+/// σ₂ is taken from the determinant, with exact products, because the difference of the roots cancels for
+/// flat maps. Both are accurate to a few units in the last place. {kHugePx, 0} if an entry is not finite.
 dvec2 singular_values(double a, double b, double c, double d);
 
-/// Bounds of the singular values of a warp's Jacobian over a rectangle of its domain.
+/// Bounds of the singular values of a warp's Jacobian over a rectangle of its domain: exact for affine warps;
+/// for a perspective warp upper bounds of magnification (and a lower bound of minification) that exceed the
+/// truth by at most (w_max / w_min)^¼ or so, and the exact anisotropy; the worst values if the horizon
+/// crosses the rectangle. where_px is the image of the place of largest magnification. An empty rectangle is
+/// at its best. Cost: 20 ns, perspective about 1 µs.
 Sampling sampling_over(const warp::Warp& warp, const layers::RectD& domain_px);
 
-/// All fiducials of showing at `now` the sprite that was rendered at `then` with `placement`, carried by `fitted.warp`.
-Report assess(const layers::LayerState& then, const layers::LayerState& now, const layers::SpritePlacement& placement,
-              const layers::Correspondences& matched, const warp::FitResult& fitted);
+/// All fiducials of showing at `now` the sprite that was rendered at `then` with `placement`, carried by
+/// `fitted.warp`.
+Report assess(const layers::LayerState& then, const layers::LayerState& now,
+              const layers::SpritePlacement& placement, const layers::Correspondences& matched,
+              const warp::FitResult& fitted);
 
 }  // namespace talisman::fiducials

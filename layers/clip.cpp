@@ -9,10 +9,12 @@
 namespace talisman::layers {
 namespace {
 
-bool is_outside(const HalfSpace& h, const dvec4& clip) {
-  // Written so that NaN is outside.
-  return !(h.distance(clip) >= -kOnPlane * std::abs(clip.w));
-}
+// Written so that NaN is outside.
+bool is_outside(double distance, double w) { return !(distance >= -kOnPlane * std::abs(w)); }
+/// An end on the plane is its own crossing.
+bool is_on_plane(double distance, double w) { return distance <= kOnPlane * std::abs(w); }
+
+bool is_outside(const HalfSpace& h, const dvec4& clip) { return is_outside(h.distance(clip), clip.w); }
 
 /// Rounding leaves a crossing up to an ulp of the far end of its edge away from the plane; on an edge that
 /// reaches 1e8 m behind the eye that is more than the near distance. So the crossing is put on the plane.
@@ -39,9 +41,9 @@ struct Polygon {
 };
 
 /// Always computed from the inner to the outer end, so that both triangles at an edge get the same bits.
-MaterialPoint crossing(const HalfSpace& h, const MaterialPoint& inner, const MaterialPoint& outer) {
-  const double d_inner = h.distance(inner.clip[h.state]);
-  const double t = d_inner / (d_inner - h.distance(outer.clip[h.state]));
+MaterialPoint crossing(const HalfSpace& h, const MaterialPoint& inner, double d_inner,
+                       const MaterialPoint& outer, double d_outer) {
+  const double t = d_inner / (d_inner - d_outer);
   MaterialPoint result;
   for (int i = 0; i < 2; ++i) result.clip[i] = inner.clip[i] + t * (outer.clip[i] - inner.clip[i]);
   const bool at_rest = result.clip[0] == result.clip[1];
@@ -51,23 +53,31 @@ MaterialPoint crossing(const HalfSpace& h, const MaterialPoint& inner, const Mat
   return result;
 }
 
-/// An end on the plane is its own crossing.
-bool is_on_plane(const HalfSpace& h, const dvec4& clip) {
-  return h.distance(clip) <= kOnPlane * std::abs(clip.w);
+/// The distances of all vertices; false if none is outside.
+bool is_cut(const HalfSpace& h, const Polygon& polygon, std::array<double, Polygon::kCapacity>& distances) {
+  bool cut = false;
+  for (int i = 0; i < polygon.count; ++i) {
+    const dvec4& clip = polygon.vertices[i].clip[h.state];
+    distances[i] = h.distance(clip);
+    cut = cut || is_outside(distances[i], clip.w);
+  }
+  return cut;
 }
 
-void clip_polygon(const HalfSpace& h, const Polygon& polygon, Polygon& result) {
+void clip_polygon(const HalfSpace& h, const Polygon& polygon,
+                  const std::array<double, Polygon::kCapacity>& distances, Polygon& result) {
   result.count = 0;
   for (int i = 0; i < polygon.count; ++i) {
-    const MaterialPoint& from = polygon.vertices[i];
-    const MaterialPoint& to = polygon.vertices[i + 1 < polygon.count ? i + 1 : 0];
-    const bool from_outside = is_outside(h, from.clip[h.state]);
-    const bool to_outside = is_outside(h, to.clip[h.state]);
+    const int j = i + 1 < polygon.count ? i + 1 : 0;
+    const MaterialPoint &from = polygon.vertices[i], &to = polygon.vertices[j];
+    const bool from_outside = is_outside(distances[i], from.clip[h.state].w);
+    const bool to_outside = is_outside(distances[j], to.clip[h.state].w);
     if (!from_outside) result.push(from);
     if (from_outside == to_outside) continue;
-    const MaterialPoint& inner = from_outside ? to : from;
-    const MaterialPoint& outer = from_outside ? from : to;
-    if (!is_on_plane(h, inner.clip[h.state])) result.push(crossing(h, inner, outer));
+    const int inner = from_outside ? j : i, outer = from_outside ? i : j;
+    if (is_on_plane(distances[inner], polygon.vertices[inner].clip[h.state].w)) continue;
+    result.push(
+        crossing(h, polygon.vertices[inner], distances[inner], polygon.vertices[outer], distances[outer]));
   }
 }
 
@@ -106,9 +116,11 @@ void clip_to_crossed(std::span<const HalfSpace> half_spaces, unsigned crossed, P
                      Polygon& spare, PointSet& points) {
   Polygon* current = &polygon;
   Polygon* next = &spare;
+  std::array<double, Polygon::kCapacity> distances;
   for (std::size_t h = 0; h < half_spaces.size(); ++h) {
-    if (!(crossed >> h & 1u)) continue;
-    clip_polygon(half_spaces[h], *current, *next);
+    // What an earlier half-space cut off may be all that this one would have.
+    if (!(crossed >> h & 1u) || !is_cut(half_spaces[h], *current, distances)) continue;
+    clip_polygon(half_spaces[h], *current, distances, *next);
     std::swap(current, next);
   }
   for (int i = 0; i < current->count; ++i) points.add(current->vertices[i]);

@@ -90,13 +90,20 @@ struct WorldBounds {
 
 /// Layer ids from back to front: groups in order; inside a group by who can occlude whom, as seen from the
 /// eye:
-///   boxes with an axis plane between them: the one on the eye's side can occlude the other, never the
-///   reverse (certain); boxes that overlap by less than half of the thinner one along some axis: as if they
-///   touched in the middle of the overlap (likely); boxes that overlap more: farthest point first, then
-///   nearest point, then id (likely). Not the nearest point first: a terrain or a room, whose box contains
-///   the eye or what stands in it, would hide all of it.
+/// - boxes that do not overlap in the view: no relation (exact: a plane through the eye along some box edge
+///   parts them);
+/// - boxes with an axis plane between them: the one on the eye's side can occlude the other, never the
+/// reverse
+///   (certain);
+/// - boxes that overlap by less than half of the thinner one along some axis: as if they touched in the
+/// middle
+///   of the overlap (likely);
+/// - boxes that overlap more: farthest point first, then nearest point, then id (likely). Not the nearest
+/// point
+///   first: a terrain or a room, whose box contains the eye or what stands in it, would hide all of it.
+///
 /// A cycle is sorted again by what is certain; what then still is cyclic, by distance as above. Layers with
-/// empty bounds come first in their group. Deterministic. Cost: O(n²) pair tests, O(n) memory.
+/// empty bounds come first in their group. Deterministic. Cost: O(n²) pair tests of some 20 ns, O(n) memory.
 std::vector<int> back_to_front(const dvec3& eye, std::span<const Layer> layers,
                                std::span<const WorldBounds> bounds);
 

@@ -10,9 +10,17 @@ namespace talisman::layers {
 
 namespace {
 
+/// What a box covers of the view around one axis: the eye and the box are projected along the axis, and the
+/// box then lies between two directions, all of it on the left of `right` and on the right of `left`.
+struct Sector {
+  dvec2 right{0, 0}, left{0, 0};
+  bool all_around = false;  ///< the projected eye is inside the projected box
+};
+
 /// A layer that has something to draw, with what the pair tests need.
 struct Box {
   dvec3 lo, hi;
+  Sector sectors[3];                 ///< around each axis
   double farthest = 0, nearest = 0;  ///< distance from the eye to the box's points
   int id = -1;
 };
@@ -23,15 +31,47 @@ Verdict opposite(Verdict v) {
   return v == Verdict::FirstBehind ? Verdict::SecondBehind : Verdict::FirstBehind;
 }
 
+double cross(dvec2 a, dvec2 b) { return a.x * b.y - a.y * b.x; }
+
+Sector make_sector(dvec2 lo, dvec2 hi) {  // relative to the eye
+  if (lo.x <= 0 && lo.y <= 0 && hi.x >= 0 && hi.y >= 0) return {{0, 0}, {0, 0}, true};
+  Sector sector{lo, lo,
+                false};  // less than half of the plane, so left and right of each other are well defined
+  for (const dvec2 corner : {hi, dvec2{lo.x, hi.y}, dvec2{hi.x, lo.y}}) {
+    if (cross(sector.left, corner) > 0) sector.left = corner;
+    if (cross(sector.right, corner) < 0) sector.right = corner;
+  }
+  return sector;
+}
+
 Box make_box(const dvec3& eye, const WorldBounds& bounds, int id) {
-  const auto far_axis = [&](int k) {
-    return std::fmax(std::fabs(eye[k] - bounds.lo[k]), std::fabs(bounds.hi[k] - eye[k]));
-  };
-  const auto near_axis = [&](int k) {
-    return std::fmax(0, std::fmax(bounds.lo[k] - eye[k], eye[k] - bounds.hi[k]));
-  };
-  return {bounds.lo, bounds.hi, std::hypot(far_axis(0), far_axis(1), far_axis(2)),
-          std::hypot(near_axis(0), near_axis(1), near_axis(2)), id};
+  const dvec3 lo = bounds.lo - eye, hi = bounds.hi - eye;
+  Box box{bounds.lo, bounds.hi, {}, 0, 0, id};
+  dvec3 far{0, 0, 0}, near{0, 0, 0};
+  for (int k = 0; k < 3; ++k) {
+    far[k] = std::fmax(std::fabs(lo[k]), std::fabs(hi[k]));
+    near[k] = std::fmax(0, std::fmax(lo[k], -hi[k]));
+    const int u = (k + 1) % 3, v = (k + 2) % 3;
+    box.sectors[k] = make_sector({lo[u], lo[v]}, {hi[u], hi[v]});
+  }
+  box.farthest = std::hypot(far.x, far.y, far.z);
+  box.nearest = std::hypot(near.x, near.y, near.z);
+  return box;
+}
+
+bool on_left(dvec2 line, const Sector& s) { return cross(line, s.right) >= 0 && cross(line, s.left) >= 0; }
+bool on_right(dvec2 line, const Sector& s) { return cross(line, s.right) <= 0 && cross(line, s.left) <= 0; }
+
+/// True if the boxes do not overlap in the view. Two convex shapes on the sphere of directions are apart
+/// exactly if a plane through the eye along an edge of one of them separates them, and all edges of boxes run
+/// along the axes: three views in the plane decide it.
+bool apart_in_view(const Box& a, const Box& b) {
+  for (int k = 0; k < 3; ++k) {
+    const Sector &s = a.sectors[k], &t = b.sectors[k];
+    if (s.all_around || t.all_around) continue;
+    if (on_left(s.left, t) || on_right(s.right, t) || on_left(t.left, s) || on_right(t.right, s)) return true;
+  }
+  return false;
 }
 
 /// Farthest points first (as Newell, Newell & Sancha sort), so that what contains comes before what it
@@ -88,7 +128,8 @@ Verdict judge(const dvec3& eye, const Box& a, const Box& b, Trust trust) {
     if (trust == Trust::Certain) return Verdict::Unrelated;
     return a.id < b.id ? judge_overlapping(eye, a, b) : opposite(judge_overlapping(eye, b, a));
   }
-  if (p.first_can_occlude == p.second_can_occlude) return Verdict::Unrelated;
+  // Without the second test pairs that never meet in the picture would close cycles that are none.
+  if (p.first_can_occlude == p.second_can_occlude || apart_in_view(a, b)) return Verdict::Unrelated;
   return p.first_can_occlude ? Verdict::SecondBehind : Verdict::FirstBehind;
 }
 

@@ -292,8 +292,8 @@ LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind ki
   LayerBound bound;
   bound.kind = kind;
   bound.node = follows_rigid_node(scene, layer) ? layer.rigid_node : -1;
-  bound.fixed = bound.node >= 0 || is_at_rest(scene, layer);
-  if (bound.fixed) {
+  bound.at_rest = bound.node < 0 && is_at_rest(scene, layer);
+  if (bound.fixed()) {
     bound.hull = bounding_polyhedron(resting_positions(scene, layer, bound.node), kind);
   } else {
     bound.axes_node = common_node(scene, layer);
@@ -303,7 +303,7 @@ LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind ki
 }
 
 std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, const LayerBound& bound) {
-  if (bound.fixed) {
+  if (bound.fixed()) {
     if (bound.node < 0) return bound.hull.points;
     TALISMAN_CHECK_LT(bound.node, static_cast<int>(frame.world_from_node.size()));
     return moved(frame.world_from_node[bound.node], bound.hull.points);

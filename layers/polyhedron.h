@@ -39,8 +39,8 @@ enum class BoundKind { Box8, Dop14, Dop26 };
 /// A closed convex polyhedron with fixed topology per kind (degenerate edges and faces are allowed).
 struct Polyhedron {
   std::vector<dvec3> points;
-  std::vector<std::array<int, 3>>
-      triangles;  ///< fan triangulation of the faces, counter-clockwise from outside
+  /// Fan triangulation of the faces, counter-clockwise from outside.
+  std::vector<std::array<int, 3>> triangles;
 };
 
 /// The bounding polyhedron of a point set: contains every point (to rounding, 1e-9 of the extent). An empty
@@ -53,12 +53,12 @@ std::span<const std::array<int, 3>> topology(BoundKind kind);
 /// The characteristic polyhedron of one layer.
 struct LayerBound {
   BoundKind kind = BoundKind::Box8;
-  int node = -1;  ///< space of `hull.points`; -1: world
-  int axes_node =
-      -1;  ///< where the points are recomputed: the node whose axes the planes follow; -1: the world's
-  bool fixed =
-      true;  ///< `hull.points` hold at every time in the space of `node`; false: recomputed at each time
-  Polyhedron hull;  ///< points are valid when `fixed`; the triangles always are
+  int node = -1;         ///< space of `hull.points`; -1: world
+  int axes_node = -1;    ///< where the points are recomputed: planes follow its axes; -1: the world's
+  bool at_rest = false;  ///< nothing in the layer moves: `hull.points` are world points at every time
+  Polyhedron hull;       ///< points are valid when fixed(); the triangles always are
+
+  bool fixed() const { return node >= 0 || at_rest; }
 };
 
 /// Fixed in `layer.rigid_node` where the layer has one, fixed in the world where nothing in it moves.

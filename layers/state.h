@@ -32,10 +32,10 @@ namespace talisman::layers {
 /// The display as the decision side sees it.
 struct View {
   ivec2 display_px{1024, 1024};
-  double clip_margin =
-      0.25;  ///< the view to which polyhedra are clipped is larger by this share of the display on
-             ///< each side; range 0 … 1; more keeps sprites longer, makes the error bound looser. Not
-             ///< less than ExtentOptions::max_growth, or sprites reach beyond the points of their fit
+  /// The view to which polyhedra are clipped is larger by this share of the display on each side. Range 0 …
+  /// 1; more keeps sprites longer and makes the error bound looser. Not less than ExtentOptions::max_growth,
+  /// or sprites reach beyond the points of their fit.
+  double clip_margin = 0.25;
   bool operator==(const View&) const = default;
 };
 
@@ -51,15 +51,13 @@ struct LayerState {
   double time_s = 0;
   View view;
   CameraState camera;
-  std::vector<dvec3>
-      world_points;  ///< characteristic points; none if the layer is empty or anything is not finite
-  std::vector<dvec4> clip_points;  ///< the same in clip space
-  std::vector<dmat4>
-      world_from_part;             ///< node matrix of each part, joint palettes appended for skinned parts
-  std::vector<LightState> lights;  ///< empty where no part of the layer is lit
-  RectD screen_bounds_px;          ///< of the polyhedron clipped to the enlarged view; empty: out of view
-  bool touches_display = false;    ///< screen_bounds_px overlaps the display itself
-  bool clipped = false;            ///< part of the polyhedron is in the enlarged view, and part is not
+  std::vector<dvec3> world_points;     ///< characteristic points; none if empty or not finite
+  std::vector<dvec4> clip_points;      ///< the same in clip space
+  std::vector<dmat4> world_from_part;  ///< of each part's node, joint palettes of skinned parts appended
+  std::vector<LightState> lights;      ///< empty where no part of the layer is lit
+  RectD screen_bounds_px;              ///< of the polyhedron clipped to the enlarged view; empty: out of view
+  bool touches_display = false;        ///< screen_bounds_px overlaps the display itself
+  bool clipped = false;                ///< part of the polyhedron is in the enlarged view, and part is not
   double nearest_w_m = 0;  ///< smallest w (depth along the view axis) of the clipped solid; 0: out of view
 
   bool in_view() const { return !screen_bounds_px.empty(); }

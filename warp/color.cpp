@@ -13,7 +13,7 @@ namespace {
 using layers::dvec3;
 
 /// A colour that the fit can square: finite, not negative, not beyond any light source.
-constexpr double kBrightest = 1e30;
+constexpr double kBrightest = 1e25;
 bool is_colour(double channel) { return channel >= 0 && channel <= kBrightest; }
 
 struct Channel {
@@ -27,6 +27,9 @@ Channel fit_channel(std::span<const dvec3> then, std::span<const dvec3> now, int
   for (std::size_t i = 0; i < then.size(); ++i)
     if (!is_colour(then[i][channel]) || !is_colour(now[i][channel])) return {1, ColorStatus::NotFinite};
   if (!(brightest > 0)) return {1, ColorStatus::Black};
+  const auto same = [channel](const dvec3& a, const dvec3& b) { return a[channel] == b[channel]; };
+  if (std::equal(then.begin(), then.end(), now.begin(), same))
+    return {1, ColorStatus::Converged};  // exactly, at rest
   double products = 0, squares = 0;
   for (std::size_t i = 0; i < then.size(); ++i) {
     const double share = then[i][channel] / brightest;
@@ -42,30 +45,34 @@ void measure(std::span<const dvec3> then, std::span<const dvec3> now, ColorFit& 
   double sum = 0, largest = -1;
   for (std::size_t i = 0; i < then.size(); ++i) {
     const dvec3 r = fitted.multiplier * then[i] - now[i];
-    const double squared = r.x * r.x + r.y * r.y + r.z * r.z;
+    double squared = r.x * r.x + r.y * r.y + r.z * r.z;
+    if (!(squared <= kHugePx * kHugePx)) squared = kHugePx * kHugePx;  // also NaN
     sum += squared;
-    if (!(squared <= largest)) largest = squared, fitted.worst_point = static_cast<int>(i);
+    if (squared > largest) largest = squared, fitted.worst_point = static_cast<int>(i);
   }
   if (then.empty()) return;
-  fitted.rms = std::sqrt(sum / static_cast<double>(then.size()));
+  fitted.rms = std::fmin(std::sqrt(sum / static_cast<double>(then.size())), kHugePx);
   fitted.max = std::sqrt(largest);
-  if (!(fitted.rms <= kHugePx)) fitted.rms = kHugePx;
-  if (!(fitted.max <= kHugePx)) fitted.max = kHugePx;
 }
 
 }  // namespace
 
 std::string_view name(ColorStatus status) {
   switch (status) {
-    case ColorStatus::Converged: return "converged";
-    case ColorStatus::Limited: return "limited";
-    case ColorStatus::Black: return "black";
-    case ColorStatus::NotFinite: return "not finite";
+    case ColorStatus::Converged:
+      return "converged";
+    case ColorStatus::Limited:
+      return "limited";
+    case ColorStatus::Black:
+      return "black";
+    case ColorStatus::NotFinite:
+      return "not finite";
   }
   TALISMAN_CHECK(false && "no such status");
 }
 
-ColorFit fit_color(std::span<const dvec3> then_linear, std::span<const dvec3> now_linear, const ColorOptions& options) {
+ColorFit fit_color(std::span<const dvec3> then_linear, std::span<const dvec3> now_linear,
+                   const ColorOptions& options) {
   TALISMAN_CHECK_EQ(then_linear.size(), now_linear.size());
   TALISMAN_CHECK(options.largest_multiplier > 0);
   ColorFit fitted;

@@ -24,8 +24,10 @@ Norm norm_of(Curve curve) {
     case Curve::soi:
     case Curve::affi:
     case Curve::peri:
-    case Curve::per2i: return Norm::Maximum;
-    default: return Norm::SumOfSquares;
+    case Curve::per2i:
+      return Norm::Maximum;
+    default:
+      return Norm::SumOfSquares;
   }
 }
 
@@ -43,12 +45,17 @@ FitResult not_finite(int point) {
 class Chain {
  public:
   Chain(std::span<const dvec2> then_px, std::span<const dvec2> now_px, Curve curve, const FitOptions& options)
-      : then_px_(then_px), now_px_(now_px), curve_(curve), options_(options), spread_(spread_of(then_px)),
+      : then_px_(then_px),
+        now_px_(now_px),
+        curve_(curve),
+        options_(options),
+        spread_(spread_of(then_px)),
         at_rest_(std::equal(then_px.begin(), then_px.end(), now_px.begin())) {}
 
   /// The answer of `family`, or of the first simpler one that has any.
   FitResult best_of(Family family) const {
-    if (static_cast<int>(then_px_.size()) < points_needed(family)) return demoted(family, FitStatus::TooFewPoints);
+    if (static_cast<int>(then_px_.size()) < points_needed(family))
+      return demoted(family, FitStatus::TooFewPoints);
     const double trust = strength(family, spread_);
     if (trust == 0) return demoted(family, FitStatus::Degenerate);
     FitResult result = at_rest_ ? FitResult{FitStatus::Converged, Warp{family}} : solve(family);
@@ -65,10 +72,12 @@ class Chain {
     return result;
   }
 
-  /// Between two families: the maps are mixed, so that the answer changes smoothly as the points lose their spread.
+  /// Between two families: the maps are mixed, so that the answer changes smoothly as the points lose their
+  /// spread.
   FitResult handed_over(FitResult result, double trust) const {
     const FitResult plain = best_of(simpler(result.warp.family));
-    Warp mixed{result.warp.family, trust * result.warp.now_from_then + (1 - trust) * plain.warp.now_from_then};
+    Warp mixed{result.warp.family,
+               trust * result.warp.now_from_then + (1 - trust) * plain.warp.now_from_then};
     if (!acceptable(mixed, then_px_)) mixed = plain.warp;
     result.warp = mixed;
     result.status = FitStatus::Degenerate;
@@ -83,12 +92,18 @@ class Chain {
 
   FitResult solve_perspective() const {
     switch (curve_) {
-      case Curve::per: return fit_homogeneous(then_px_, now_px_, spread_);
-      case Curve::per2: return fit_post_divide(then_px_, now_px_, spread_, options_);
-      case Curve::peri: return fit_max_norm_homogeneous(then_px_, now_px_, options_);
-      case Curve::per2i: return fit_max_norm(then_px_, now_px_, Family::Perspective, options_);
-      case Curve::pers2: return ceres_post_divide(then_px_, now_px_, best_of(Family::Affine).warp);
-      default: return {FitStatus::Degenerate, {}};  // pers: no quadrilateral without the layer in space
+      case Curve::per:
+        return fit_homogeneous(then_px_, now_px_, spread_);
+      case Curve::per2:
+        return fit_post_divide(then_px_, now_px_, spread_, options_);
+      case Curve::peri:
+        return fit_max_norm_homogeneous(then_px_, now_px_, options_);
+      case Curve::per2i:
+        return fit_max_norm(then_px_, now_px_, Family::Perspective, options_);
+      case Curve::pers2:
+        return ceres_post_divide(then_px_, now_px_, best_of(Family::Affine).warp);
+      default:
+        return {FitStatus::Degenerate, {}};  // pers: no quadrilateral without the layer in space
     }
   }
 
@@ -108,7 +123,7 @@ void measure_with(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
     const dvec2 r = map(then_px[i]) - now_px[i];
     const double squared = r.x * r.x + r.y * r.y;
     sum += squared;
-    if (!(squared <= largest)) largest = squared, worst = static_cast<int>(i);  // NaN counts as the worst
+    if (squared > largest) largest = squared, worst = static_cast<int>(i);
   }
   result.rms_px = std::sqrt(sum / static_cast<double>(then_px.size()));
   result.max_px = std::sqrt(largest);
@@ -119,11 +134,16 @@ void measure_with(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
 
 std::string_view name(FitStatus status) {
   switch (status) {
-    case FitStatus::Converged: return "converged";
-    case FitStatus::TooFewPoints: return "too few points";
-    case FitStatus::Degenerate: return "degenerate";
-    case FitStatus::NotFinite: return "not finite";
-    case FitStatus::NotConverged: return "not converged";
+    case FitStatus::Converged:
+      return "converged";
+    case FitStatus::TooFewPoints:
+      return "too few points";
+    case FitStatus::Degenerate:
+      return "degenerate";
+    case FitStatus::NotFinite:
+      return "not finite";
+    case FitStatus::NotConverged:
+      return "not converged";
   }
   TALISMAN_CHECK(false && "no such status");
 }
@@ -136,16 +156,17 @@ void measure(std::span<const dvec2> then_px, std::span<const dvec2> now_px, FitR
   if (result.warp.is_affine()) {
     measure_with(then_px, now_px, result, result.warp.affine());
   } else {
-    // Beyond the horizon a point has no image: NaN, which the caps below turn into the largest error.
+    // Beyond the horizon a point has no image: it counts as being infinitely far away.
     measure_with(then_px, now_px, result, [&](dvec2 p) {
-      return result.warp.denominator(p) > 0 ? result.warp(p) : dvec2(std::nan(""));
+      return result.warp.denominator(p) > 0 ? result.warp(p) : dvec2(2 * kHugePx);
     });
   }
   if (!(result.rms_px <= kHugePx)) result.rms_px = kHugePx;
   if (!(result.max_px <= kHugePx)) result.max_px = kHugePx;
 }
 
-FitResult fit(std::span<const dvec2> then_px, std::span<const dvec2> now_px, Curve curve, const FitOptions& options) {
+FitResult fit(std::span<const dvec2> then_px, std::span<const dvec2> now_px, Curve curve,
+              const FitOptions& options) {
   TALISMAN_CHECK_EQ(then_px.size(), now_px.size());
   const Family family = family_of(curve);
   if (then_px.empty()) return {FitStatus::TooFewPoints, Warp{Family::Translation}};

@@ -21,21 +21,21 @@ constexpr double kRoundingPromise = 1e-31;
 constexpr double kFirstDamping = 1e-3, kLargestDamping = 1e8;
 
 struct Pair {
-  dvec2 q, p;   ///< normalised then and now
+  dvec2 q, p;  ///< normalised then and now
 };
 
 struct Row {
   double w = 1;
-  std::array<double, 3> basis{};   ///< orthonormal over the points, spans 1/w, u/w, v/w
-  dvec2 residual{0, 0};            ///< p minus the best A q / w
+  std::array<double, 3> basis{};  ///< orthonormal over the points, spans 1/w, u/w, v/w
+  dvec2 residual{0, 0};           ///< p minus the best A q / w
 };
 
 /// What the projection leaves of the problem at one (g, h).
 struct State {
   dvec2 gh{0, 0};
-  double cost = 0;               ///< sum of squared residuals
+  double cost = 0;  ///< sum of squared residuals
   std::vector<Row> rows;
-  std::array<double, 6> r{};     ///< upper triangle of the basis change: 00 01 02 11 12 22
+  std::array<double, 6> r{};  ///< upper triangle of the basis change: 00 01 02 11 12 22
 };
 
 /// A 2×2 symmetric system in g and h.
@@ -79,18 +79,21 @@ class Separable {
     return std::isfinite(state.cost);
   }
 
-  /// Step direction in (g, h): derivatives of the residuals, A projected out. `homogeneous` takes the points themselves
-  /// instead of their fitted images, which makes the step at g = h = 0 the exact solution of `per`.
+  /// Step direction in (g, h): derivatives of the residuals, A projected out. `homogeneous` takes the points
+  /// themselves instead of their fitted images, which makes the step at g = h = 0 the exact solution of
+  /// `per`.
   Normal normal(const State& state, bool homogeneous) const {
     Normal n;
     std::array<dvec2, 3> on_g{}, on_h{};  // components of the columns along the basis
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       const Columns c = columns(state, i, homogeneous);
-      for (int k = 0; k < 3; ++k) on_g[k] += c.g * state.rows[i].basis[k], on_h[k] += c.h * state.rows[i].basis[k];
+      for (int k = 0; k < 3; ++k)
+        on_g[k] += c.g * state.rows[i].basis[k], on_h[k] += c.h * state.rows[i].basis[k];
     }
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       Columns c = columns(state, i, homogeneous);
-      for (int k = 0; k < 3; ++k) c.g -= on_g[k] * state.rows[i].basis[k], c.h -= on_h[k] * state.rows[i].basis[k];
+      for (int k = 0; k < 3; ++k)
+        c.g -= on_g[k] * state.rows[i].basis[k], c.h -= on_h[k] * state.rows[i].basis[k];
       const dvec2 r = state.rows[i].residual;
       n.gg += c.g.x * c.g.x + c.g.y * c.g.y;
       n.gh += c.g.x * c.h.x + c.g.y * c.h.y;
@@ -100,7 +103,8 @@ class Separable {
     return n;
   }
 
-  /// The homography with the A that fits p (after the divide, `state` at gh) or p w (before it, `state` at 0).
+  /// The homography with the A that fits p (after the divide, `state` at gh) or p w (before it, `state` at
+  /// 0).
   dmat3 homography(const State& state, dvec2 gh, bool homogeneous) const {
     std::array<dvec2, 3> c{};
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
@@ -171,7 +175,8 @@ class Separable {
   std::vector<Pair> pairs_;
 };
 
-/// The state at g = h = 0 (the affine fit) and the (g, h) of the homogeneous fit; empty where they are not determined.
+/// The state at g = h = 0 (the affine fit) and the (g, h) of the homogeneous fit; empty where they are not
+/// determined.
 struct Start {
   State affine;
   dvec2 homogeneous{0, 0};
@@ -223,7 +228,8 @@ Descent descend(const Separable& problem, State& state, State& trial, int max_it
 
 dvec2 PerspectiveFrame::normalised_then(dvec2 p) const {
   const dvec2 d = p - then.centroid;
-  return {(d.x * then.axis.x + d.y * then.axis.y) / then.sigma_1, (d.y * then.axis.x - d.x * then.axis.y) / then.sigma_2};
+  return {(d.x * then.axis.x + d.y * then.axis.y) / then.sigma_1,
+          (d.y * then.axis.x - d.x * then.axis.y) / then.sigma_2};
 }
 
 Warp PerspectiveFrame::to_pixels(const dmat3& normalised) const {

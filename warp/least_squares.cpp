@@ -32,13 +32,15 @@ class RowOfK {
   dvec2 operator()(dvec2 p) const {
     const dvec2 q = along_axes(p);
     const double across = (q.y - slant_ * q.x) * per_v_ / spread_.sigma_2;
-    const double along = q.x * per_u_ / spread_.sigma_1 - slant_ * across * (spread_.sigma_2 / spread_.sigma_1);
+    const double along =
+        q.x * per_u_ / spread_.sigma_1 - slant_ * across * (spread_.sigma_2 / spread_.sigma_1);
     const dvec2 axis = spread_.axis;
     return {along * axis.x - across * axis.y, along * axis.y + across * axis.x};
   }
 
  private:
-  /// In units of the spread along each axis, so that neither large nor tiny sprites leave the range of a double.
+  /// In units of the spread along each axis, so that neither large nor tiny sprites leave the range of a
+  /// double.
   dvec2 along_axes(dvec2 p) const {
     const dvec2 d = p - spread_.centroid, axis = spread_.axis;
     return {(d.x * axis.x + d.y * axis.y) / spread_.sigma_1, (d.y * axis.x - d.x * axis.y) / spread_.sigma_2};
@@ -70,7 +72,8 @@ Affine2 fit_affine(std::span<const dvec2> then_px, std::span<const dvec2> now_px
 }
 
 /// s and t of each axis, or of both together; deviations in units of `unit_px`.
-Affine2 fit_scale(std::span<const dvec2> then_px, std::span<const dvec2> now_px, dvec2 centroid, dvec2 unit_px, bool one_scale) {
+Affine2 fit_scale(std::span<const dvec2> then_px, std::span<const dvec2> now_px, dvec2 centroid,
+                  dvec2 unit_px, bool one_scale) {
   const dvec2 mean = mean_of(now_px);
   dvec2 squares{0, 0}, products{0, 0};
   for (std::size_t i = 0; i < now_px.size(); ++i) {
@@ -86,7 +89,8 @@ Affine2 fit_scale(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
 
 }  // namespace
 
-Warp fit_least_squares(std::span<const dvec2> then_px, std::span<const dvec2> now_px, Family family, const Spread& spread) {
+Warp fit_least_squares(std::span<const dvec2> then_px, std::span<const dvec2> now_px, Family family,
+                       const Spread& spread) {
   TALISMAN_CHECK_EQ(then_px.size(), now_px.size());
   TALISMAN_CHECK(!then_px.empty() && family != Family::Perspective);
   const dvec2 centroid = spread.centroid;
@@ -98,13 +102,17 @@ Warp fit_least_squares(std::span<const dvec2> then_px, std::span<const dvec2> no
     case Family::Isotropic:
       return from_affine(family, fit_scale(then_px, now_px, centroid, dvec2(spread.sigma_1), true));
     case Family::XyScale:
-      return from_affine(family, fit_scale(then_px, now_px, centroid, {spread.sigma_x, spread.sigma_y}, false));
-    default: return from_affine(family, fit_affine(then_px, now_px, spread));
+      return from_affine(family,
+                         fit_scale(then_px, now_px, centroid, {spread.sigma_x, spread.sigma_y}, false));
+    default:
+      return from_affine(family, fit_affine(then_px, now_px, spread));
   }
 }
 
-AffineLeastSquares::AffineLeastSquares(std::span<const dvec2> then_px) : then_px_(then_px.begin(), then_px.end()) {
-  if (static_cast<int>(then_px.size()) < points_needed(Family::Affine) || first_bad_point(then_px) >= 0) return;
+AffineLeastSquares::AffineLeastSquares(std::span<const dvec2> then_px)
+    : then_px_(then_px.begin(), then_px.end()) {
+  if (static_cast<int>(then_px.size()) < points_needed(Family::Affine) || first_bad_point(then_px) >= 0)
+    return;
   const Spread spread = spread_of(then_px);
   if (strength(Family::Affine, spread) < 1) return;
   centroid_ = spread.centroid;
@@ -115,7 +123,8 @@ AffineLeastSquares::AffineLeastSquares(std::span<const dvec2> then_px) : then_px
 
 FitResult AffineLeastSquares::fit(std::span<const dvec2> now_px) const {
   TALISMAN_CHECK_EQ(then_px_.size(), now_px.size());
-  if (k_.empty() || now_px[0] == then_px_[0]) return warp::fit(then_px_, now_px, Curve::aff);  // perhaps at rest
+  if (k_.empty() || now_px[0] == then_px_[0])
+    return warp::fit(then_px_, now_px, Curve::aff);  // perhaps at rest
   const Affine2 map = affine_from(now_px, centroid_, [&](std::size_t i) { return k_[i]; });
   FitResult result{FitStatus::Converged, from_affine(Family::Affine, map)};
   // A point that is not finite makes the map so; one that is merely huge is refused with the fit's own limit.

@@ -32,7 +32,8 @@ dvec3 centre_of_bounds(std::span<const dvec3> points) {
   return (lo + hi) / 2.0;
 }
 
-/// The rectangle that bounds the points, projected from the eye onto the plane through their centre that faces the eye.
+/// The rectangle that bounds the points, projected from the eye onto the plane through their centre that
+/// faces the eye.
 std::optional<Quad> facing_rectangle(const LayerState& state) {
   const dmat4& world_from_camera = state.camera.world_from_camera;
   const dvec3 eye = dvec3(world_from_camera[3]), centre = centre_of_bounds(state.world_points);
@@ -51,8 +52,8 @@ std::optional<Quad> facing_rectangle(const LayerState& state) {
     bounds.include(dvec2{glm::dot(ray, right), glm::dot(ray, up)} * (distance / depth));
   }
   const auto corner = [&](double x, double y) { return centre + x * right + y * up; };
-  return Quad{corner(bounds.lo.x, bounds.lo.y), corner(bounds.hi.x, bounds.lo.y), corner(bounds.hi.x, bounds.hi.y),
-              corner(bounds.lo.x, bounds.hi.y)};
+  return Quad{corner(bounds.lo.x, bounds.lo.y), corner(bounds.hi.x, bounds.lo.y),
+              corner(bounds.hi.x, bounds.hi.y), corner(bounds.lo.x, bounds.hi.y)};
 }
 
 /// Eigen's Umeyama on points relative to their centres, in units of the size then.
@@ -117,8 +118,8 @@ FitResult fit_shade(const LayerState& then, const LayerState& now, const layers:
   return result;
 }
 
-FitResult fit(const LayerState& then, const LayerState& now, const layers::Correspondences& matched, Curve curve,
-              const FitOptions& options) {
+FitResult fit(const LayerState& then, const LayerState& now, const layers::Correspondences& matched,
+              Curve curve, const FitOptions& options) {
   if (curve == Curve::pers) return fit_shade(then, now, matched);
   if (curve != Curve::pers2) return fit(matched.then_px, matched.now_px, curve, options);
   FitResult plain = fit(matched.then_px, matched.now_px, curve, options);
@@ -127,7 +128,8 @@ FitResult fit(const LayerState& then, const LayerState& now, const layers::Corre
   FitResult refined = ceres_post_divide(matched.then_px, matched.now_px, start.warp);
   if (!acceptable(refined.warp, matched.then_px)) return plain;
   measure(matched.then_px, matched.now_px, refined);
-  // The descent from the quadrilateral may end in another valley than that from the affine warp; the lower one is meant.
+  // The descent from the quadrilateral may end in another valley than that from the affine warp; the lower
+  // one is meant.
   return plain.status == FitStatus::Converged && plain.rms_px < refined.rms_px ? plain : refined;
 }
 

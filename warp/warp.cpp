@@ -34,14 +34,16 @@ constexpr std::array<CurveEntry, 14> kCurves{{{Curve::trn, "trn", Family::Transl
                                               {Curve::pers2, "pers2", Family::Perspective}}};
 
 const CurveEntry& entry(Curve curve) {
-  const auto found = std::find_if(kCurves.begin(), kCurves.end(), [&](const auto& e) { return e.curve == curve; });
+  const auto found =
+      std::find_if(kCurves.begin(), kCurves.end(), [&](const auto& e) { return e.curve == curve; });
   TALISMAN_CHECK(found != kCurves.end());
   return *found;
 }
 
 bool all_finite(const dmat3& m) {
   for (int column = 0; column < 3; ++column)
-    if (!std::isfinite(m[column].x) || !std::isfinite(m[column].y) || !std::isfinite(m[column].z)) return false;
+    if (!std::isfinite(m[column].x) || !std::isfinite(m[column].y) || !std::isfinite(m[column].z))
+      return false;
   return true;
 }
 
@@ -66,11 +68,16 @@ std::optional<Warp> inverse_perspective(const Warp& warp) {
 
 std::string_view name(Family family) {
   switch (family) {
-    case Family::Translation: return "translation";
-    case Family::Isotropic: return "isotropic";
-    case Family::XyScale: return "xy-scale";
-    case Family::Affine: return "affine";
-    case Family::Perspective: return "perspective";
+    case Family::Translation:
+      return "translation";
+    case Family::Isotropic:
+      return "isotropic";
+    case Family::XyScale:
+      return "xy-scale";
+    case Family::Affine:
+      return "affine";
+    case Family::Perspective:
+      return "perspective";
   }
   TALISMAN_CHECK(false && "no such family");
 }
@@ -87,11 +94,16 @@ Family family_of(Curve curve) { return entry(curve).family; }
 
 int degrees_of_freedom(Family family) {
   switch (family) {
-    case Family::Translation: return 2;
-    case Family::Isotropic: return 3;
-    case Family::XyScale: return 4;
-    case Family::Affine: return 6;
-    case Family::Perspective: return 8;
+    case Family::Translation:
+      return 2;
+    case Family::Isotropic:
+      return 3;
+    case Family::XyScale:
+      return 4;
+    case Family::Affine:
+      return 6;
+    case Family::Perspective:
+      return 8;
   }
   TALISMAN_CHECK(false && "no such family");
 }
@@ -120,9 +132,7 @@ Affine2 Warp::affine() const {
   return {m[0].x, m[1].x, m[2].x, m[0].y, m[1].y, m[2].y};
 }
 
-Warp from_affine(Family family, const Affine2& map) {
-  return {family, layers::to_mat3(map)};
-}
+Warp from_affine(Family family, const Affine2& map) { return {family, layers::to_mat3(map)}; }
 
 Warp compose(const Warp& outer, const Warp& inner) {
   const Family family = std::max(outer.family, inner.family);

@@ -26,8 +26,9 @@ using layers::dvec3;
 
 enum class Family { Translation, Isotropic, XyScale, Affine, Perspective };
 
-/// The curves of [LS97 4.2] and our extras (iso, isoi, per2i). "i" is the maximum norm, otherwise the sum of squares;
-/// per and peri measure in homogeneous space, per2 and per2i after the divide; pers is Shade's quadrilateral, pers2 refines it.
+/// The curves of [LS97 4.2] and our extras (iso, isoi, per2i). "i" is the maximum norm, otherwise the sum of
+/// squares; per and peri measure in homogeneous space, per2 and per2i after the divide; pers is Shade's
+/// quadrilateral, pers2 refines it.
 enum class Curve { trn, trni, iso, isoi, so, soi, aff, affi, per, peri, per2, per2i, pers, pers2 };
 
 std::string_view name(Family family);

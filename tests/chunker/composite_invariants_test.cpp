@@ -203,7 +203,8 @@ TEST(CompositeInvariants, TranslationByWholeTilesMovesThePicture) {
   const Sprite sprite = make_sprite({60, 50}, [&](int, int) {
     return Texel{random.byte(), random.byte(), 3, random.byte()};
   });
-  const dmat3 map = affine(1, 0.25, 4.125, 0, 1, 12.5);  // its inverse and that of its copy are exact in double
+  const dmat3 map =
+      affine(1, 0.25, 4.125, 0, 1, 12.5);  // its inverse and that of its copy are exact in double
   const PlacedSprite here = placed(sprite, map), there = placed(sprite, translation(64, 32) * map);
   const Frame a = composite({&here, 1}, {128, 96}, {0, 0, 0}).frame;
   const Frame b = composite({&there, 1}, {192, 128}, {0, 0, 0}).frame;

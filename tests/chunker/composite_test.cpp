@@ -195,6 +195,19 @@ TEST(Composite, NoSpritesShowTheBackground) {
   EXPECT_EQ(result.counters, CompositeCounters{});
 }
 
+// Frames of a sequence share memory; nothing of the last one may shine through, also when the size changes.
+TEST(CompositeInto, UsedFrameGivesTheSameBytesAsAFreshOne) {
+  Random random(13);
+  const Sprite sprite = random.sprite(90);
+  Frame frame;
+  for (const ivec2 display : {ivec2{100, 70}, ivec2{100, 70}, ivec2{33, 65}, ivec2{0, 0}, ivec2{120, 90}}) {
+    const PlacedSprite p = placed(sprite, random_map(random, {60, 40}));
+    const CompositeResult fresh = composite({&p, 1}, display, {0.5f, 0, 0});
+    EXPECT_EQ(composite_into(frame, {&p, 1}, display, {0.5f, 0, 0}), fresh.counters);
+    EXPECT_EQ(difference(frame, fresh.frame), "");
+  }
+}
+
 TEST(Composite, BackgroundThatIsNotANumberIsBlack) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(composite({}, {1, 1}, {nan, -1, 0}).frame.pixels[0], (Linear16{0, 0, 0, 65025}));

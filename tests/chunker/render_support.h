@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What the renderer's tests share: scenes made of a few triangles, pictures as plain values, and a way to look at them.
+/// What the renderer's tests share: scenes made of a few triangles, pictures as plain values, and a way to
+/// look at them.
 
 #include <cstdlib>
 #include <fstream>
@@ -36,20 +37,22 @@ inline std::vector<int> all_parts(const layers::Scene& scene) {
   return parts;
 }
 
-inline RenderResult render_all(const layers::Scene& scene, const layers::SpritePlacement& placement, ivec2 display_px,
-                               const RenderOptions& options = {}, double t_s = 0) {
+inline RenderResult render_all(const layers::Scene& scene, const layers::SpritePlacement& placement,
+                               ivec2 display_px, const RenderOptions& options = {}, double t_s = 0) {
   const PreparedScene prepared(scene);
   return render(prepared, scene.at(t_s), all_parts(scene), display_px, placement, options);
 }
-inline RenderResult render_all(const layers::Scene& scene, ivec2 size, const RenderOptions& options = {}, double t_s = 0) {
+inline RenderResult render_all(const layers::Scene& scene, ivec2 size, const RenderOptions& options = {},
+                               double t_s = 0) {
   return render_all(scene, display_placement(size), size, options, t_s);
 }
-inline Sprite render_reference(const layers::Scene& scene, const layers::SpritePlacement& placement, ivec2 display_px,
-                               const RenderOptions& options = {}, double t_s = 0) {
+inline Sprite render_reference(const layers::Scene& scene, const layers::SpritePlacement& placement,
+                               ivec2 display_px, const RenderOptions& options = {}, double t_s = 0) {
   const PreparedScene prepared(scene);
   return reference::render(prepared, scene.at(t_s), all_parts(scene), display_px, placement, options);
 }
-inline Sprite render_reference(const layers::Scene& scene, ivec2 size, const RenderOptions& options = {}, double t_s = 0) {
+inline Sprite render_reference(const layers::Scene& scene, ivec2 size, const RenderOptions& options = {},
+                               double t_s = 0) {
   return render_reference(scene, display_placement(size), size, options, t_s);
 }
 
@@ -72,7 +75,8 @@ inline Difference difference(const Sprite& a, const Sprite& b) {
   for (int y = 0; y < a.size_px().y; ++y)
     for (int x = 0; x < a.size_px().x; ++x) {
       const Texel p = a.texel(x, y), q = b.texel(x, y);
-      const int most = std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b), std::abs(p.a - q.a)});
+      const int most =
+          std::max({std::abs(p.r - q.r), std::abs(p.g - q.g), std::abs(p.b - q.b), std::abs(p.a - q.a)});
       if (most > 0) ++d.texels;
       if (most > d.largest) {
         d.largest = most;
@@ -89,7 +93,8 @@ inline int covered_texels(const Sprite& sprite) {
   return count;
 }
 
-/// Looks at the renderer's output: writes NAME.ppm over mid grey into the folder named by TALISMAN_PICTURES, if that is set.
+/// Looks at the renderer's output: writes NAME.ppm over mid grey into the folder named by TALISMAN_PICTURES,
+/// if that is set.
 inline void dump_picture(const std::string& name, const Sprite& sprite) {
   const char* folder = std::getenv("TALISMAN_PICTURES");
   if (folder == nullptr) return;
@@ -100,12 +105,14 @@ inline void dump_picture(const std::string& name, const Sprite& sprite) {
       const Linear16 c = decode(sprite.texel(x, y));
       const std::uint32_t behind = (kOne - c.a) / 5;
       for (const std::uint16_t v : {c.r, c.g, c.b})
-        out.put(static_cast<char>(srgb_from_linear16(static_cast<std::uint16_t>(std::min<std::uint32_t>(v + behind, kOne)))));
+        out.put(static_cast<char>(
+            srgb_from_linear16(static_cast<std::uint16_t>(std::min<std::uint32_t>(v + behind, kOne)))));
     }
 }
 
-/// A scene in pixels: a camera at the origin, 90° high, looks along -z, so that the plane z = -size.y/2 lies on the display pixel for pixel.
-/// Corners are given as (x, y) pixels with y down and a depth factor (1: that plane, 2: twice as far at the same pixel).
+/// A scene in pixels: a camera at the origin, 90° high, looks along -z, so that the plane z = -size.y/2 lies
+/// on the display pixel for pixel. Corners are given as (x, y) pixels with y down and a depth factor (1: that
+/// plane, 2: twice as far at the same pixel).
 class FlatScene {
  public:
   explicit FlatScene(ivec2 size) : size_(size) {
@@ -131,8 +138,8 @@ class FlatScene {
     return add(corners, indices, color, opacity);
   }
 
-  layers::Material& add(const std::vector<Corner>& corners, const std::vector<std::uint32_t>& indices, vec3 color,
-                        float opacity = 1) {
+  layers::Material& add(const std::vector<Corner>& corners, const std::vector<std::uint32_t>& indices,
+                        vec3 color, float opacity = 1) {
     layers::Mesh mesh;
     for (const Corner& c : corners) mesh.positions.push_back(point(c));
     mesh.indices = indices;
@@ -152,7 +159,9 @@ class FlatScene {
 
   layers::Mesh& mesh() { return scene.meshes.back(); }
   RenderResult render(const RenderOptions& options = {}) const { return render_all(scene, size_, options); }
-  Sprite reference(const RenderOptions& options = {}) const { return render_reference(scene, size_, options); }
+  Sprite reference(const RenderOptions& options = {}) const {
+    return render_reference(scene, size_, options);
+  }
 
   layers::Scene scene;
 

@@ -11,6 +11,7 @@
 
 #include "layers/state.h"
 #include "tests/layers/worlds.h"
+#include "tests/support/scenes.h"
 
 namespace talisman::tests {
 namespace {
@@ -238,7 +239,7 @@ TEST(LayerBound, RigidPartsAreBoundedOnceInTheirNode) {
   const ArmScene arm;
   const auto layer = arm.layer({0, 1}, 0);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Box8);
-  EXPECT_TRUE(bound.fixed);
+  EXPECT_TRUE(bound.fixed());
   EXPECT_EQ(bound.node, 0);
   const auto box = layers::bounds_of(bound.hull.points);
   EXPECT_EQ(box.lo, dvec3(-0.5, -0.5, -0.5));
@@ -254,7 +255,7 @@ TEST(LayerBound, PartsThatMoveAgainstEachOtherAreBoundedAtEachTimeAndTurnAsAWhol
   const ArmScene arm;
   const auto layer = arm.layer({1, 2}, -1);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Dop26);
-  EXPECT_FALSE(bound.fixed);
+  EXPECT_FALSE(bound.fixed());
   EXPECT_EQ(bound.axes_node, 1);
   EXPECT_EQ(bound.hull.triangles.size(), 92u);
   for (const double hand_angle : {0.0, 0.4, 2.0}) {
@@ -280,7 +281,7 @@ TEST(LayerBound, WhatNeverMovesIsFixedInTheWorld) {
   arm.scene.tracks.clear();
   const auto layer = arm.layer({0, 2}, -1);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Box8);
-  EXPECT_TRUE(bound.fixed);
+  EXPECT_TRUE(bound.fixed());
   EXPECT_EQ(bound.node, -1);
   EXPECT_EQ(layers::bounds_of(world_points(arm.frame(0, 0), layer, bound)).hi, dvec3(3.5, 2.5, 0.5));
 }
@@ -293,7 +294,7 @@ TEST(LayerBound, SkinnedPartsFollowTheirVertices) {
   arm.scene.parts[0].skin = 0;
   const auto layer = arm.layer({0}, -1);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Box8);
-  EXPECT_FALSE(bound.fixed);
+  EXPECT_FALSE(bound.fixed());
   EXPECT_EQ(bound.axes_node, 1);
   const auto frame = arm.frame(0.9, 0.2);
   const auto part = world_positions(frame, arm.scene.parts[0]);
@@ -319,6 +320,39 @@ TEST(LayerBound, ANodeScaledToNothingFallsBackToTheAxesOfTheWorld) {
   frame.world_from_node[1] = glm::scale(dmat4(1.0), dvec3(0.0));
   for (const dvec3& p : world_points(frame, layer, bound)) EXPECT_TRUE(std::isfinite(p.x + p.y + p.z));
   EXPECT_EQ(world_points(frame, layer, bound).size(), 8u);
+}
+
+TEST(LayerBound, EveryVertexIsInsideAtEveryTime) {
+  // The scenes of the tests: rigid, orbiting, skinned, at a scale of 1e-4 and of 1e6; one layer per part, and
+  // one of all.
+  for (const layers::Scene& scene :
+       {moving_scene(), skinned_bar_scene(), cube_scene(), tiny_scene(), huge_scene()}) {
+    auto specs = one_layer_per_part(scene);
+    const std::size_t separate = specs.size();
+    const auto one_each = factor(scene, specs);
+    specs.resize(1);
+    specs[0].part_globs = {"*"};
+    const auto together = factor(scene, specs);
+    ASSERT_EQ(one_each.layers.size(), separate);
+    ASSERT_EQ(together.layers.size(), 1u);
+    for (const auto* set : {&one_each, &together}) {
+      for (const auto& layer : set->layers) {
+        for (const BoundKind kind : kKinds) {
+          const auto bound = make_layer_bound(scene, layer, kind);
+          for (const double time : {0.0, 0.7, 1.9, 3.3}) {
+            SCOPED_TRACE(layer.name + " at " + std::to_string(time));
+            const auto frame = scene.at(time);
+            std::vector<dvec3> vertices;
+            for (const int part : layer.parts) {
+              const auto of_part = world_positions(frame, scene.parts[part]);
+              vertices.insert(vertices.end(), of_part.begin(), of_part.end());
+            }
+            expect_contains({world_points(frame, layer, bound), {}}, vertices);
+          }
+        }
+      }
+    }
+  }
 }
 
 }  // namespace

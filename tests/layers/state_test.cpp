@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "layers/clip.h"
 #include "tests/layers/worlds.h"
+#include "tests/support/scenes.h"
 
 namespace talisman::tests {
 namespace {
@@ -203,6 +205,48 @@ TEST(SamePixels, NotANumberIsNeverTheSame) {
   const World world(box_corners({1, 1, 1}));
   const LayerState state = world.at(moved_by({0, kNan, -5}));
   EXPECT_FALSE(state.same_pixels(state));
+}
+
+TEST(Capture, SkinnedPartsAddTheirJointsToWhatIsCompared) {
+  const layers::Scene scene = skinned_bar_scene();
+  const auto set = factor(scene, one_layer_per_part(scene));
+  const auto bound = make_layer_bound(scene, set.layers[0], layers::BoundKind::Box8);
+  const auto at = [&](double time) { return capture(scene.at(time), set.layers[0], bound, {}); };
+  EXPECT_EQ(at(0).world_from_part.size(), 1 + scene.skins[0].joints.size());
+  EXPECT_TRUE(at(0).same_pixels(at(0)));
+  // The node of the part stands still; only its joints bend.
+  EXPECT_EQ(at(0).world_from_part[0], at(0.5).world_from_part[0]);
+  EXPECT_FALSE(at(0).same_pixels(at(0.5)));
+}
+
+TEST(Capture, EveryVertexInViewIsInsideTheBoundsAndNotNearerThanTheNearest) {
+  const layers::Scene scene = moving_scene();
+  const auto set = factor(scene, one_layer_per_part(scene));
+  layers::View view;
+  view.display_px = {320, 240};
+  int seen = 0;
+  for (const auto& layer : set.layers) {
+    const auto bound = make_layer_bound(scene, layer, layers::BoundKind::Dop26);
+    for (double time = 0; time < 4; time += 0.25) {
+      const auto frame = scene.at(time);
+      const LayerState state = capture(frame, layer, bound, view);
+      const dmat4 clip_from_world = layers::clip_from_world(frame.camera, view.display_px);
+      for (const dvec3& p : world_positions(frame, scene.parts[layer.parts[0]])) {
+        const dvec4 clip = clip_from_world * dvec4(p, 1);
+        if (layers::outcode(layers::view_half_spaces(frame.camera.near_m, view.clip_margin, 0), clip) != 0)
+          continue;
+        ++seen;
+        ASSERT_TRUE(state.in_view());
+        const dvec2 screen = layers::screen_from_clip(clip, view.display_px);
+        EXPECT_GE(std::min(screen.x - state.screen_bounds_px.lo.x, screen.y - state.screen_bounds_px.lo.y),
+                  -1e-4);
+        EXPECT_GE(std::min(state.screen_bounds_px.hi.x - screen.x, state.screen_bounds_px.hi.y - screen.y),
+                  -1e-4);
+        EXPECT_GE(clip.w, state.nearest_w_m * (1 - 1e-6));
+      }
+    }
+  }
+  EXPECT_GT(seen, 1000);
 }
 
 TEST(BoundsOf, NoPointsAreEmpty) { EXPECT_TRUE(layers::bounds_of({}).empty()); }

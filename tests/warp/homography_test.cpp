@@ -23,14 +23,16 @@ using tests::with_noise;
 
 FitResult fit(const Pairs& pairs, Curve curve) { return warp::fit(pairs.then_px, pairs.now_px, curve); }
 
-/// The homogeneous sum of squares in normalised coordinates, H scaled to denominator 1 at the centroid: what `per` minimises.
+/// The homogeneous sum of squares in normalised coordinates, H scaled to denominator 1 at the centroid: what
+/// `per` minimises.
 double homogeneous_cost(const Pairs& pairs, const Warp& warp) {
   const PerspectiveFrame frame = perspective_frame(pairs.now_px, spread_of(pairs.then_px));
   const double unit = warp.denominator(frame.then.centroid);
   double sum = 0;
   for (std::size_t i = 0; i < pairs.size(); ++i) {
     const double w = warp.denominator(pairs.then_px[i]) / unit;
-    const dvec2 r = (frame.normalised_now(warp(pairs.then_px[i])) - frame.normalised_now(pairs.now_px[i])) * w;
+    const dvec2 r =
+        (frame.normalised_now(warp(pairs.then_px[i])) - frame.normalised_now(pairs.now_px[i])) * w;
     sum += r.x * r.x + r.y * r.y;
   }
   return sum;
@@ -87,7 +89,8 @@ TEST(FitPerspective, FourPointsWithADuplicateFallBackToAffine) {
   }
 }
 
-// A quadrilateral that becomes non-convex needs a horizon between its corners: no sprite can be shown through that.
+// A quadrilateral that becomes non-convex needs a horizon between its corners: no sprite can be shown through
+// that.
 TEST(FitPerspective, AHorizonAmongThePointsFallsBackToAffine) {
   const Pairs dart{{{0, 0}, {100, 0}, {100, 100}, {0, 100}}, {{0, 0}, {100, 0}, {20, 20}, {0, 100}}};
   const Pairs split = exact_perspective(24, 12, {1, 0, 0.01, 0, 1, 0, 0, 0, -5.12});
@@ -116,7 +119,8 @@ TEST(FitHomogeneous, NoNearbyHomographyHasASmallerHomogeneousSum) {
         for (int r = 0; r < 3; ++r)
           if (c < 2 || r < 2) nudge[c][r] += random.uniform(-1e-3, 1e-3);
       const Warp to_px = frame.to_pixels(nudge), identity = frame.to_pixels(dmat3(1.0));
-      other.now_from_then = best.warp.now_from_then * (inverse(identity)->now_from_then * to_px.now_from_then);
+      other.now_from_then =
+          best.warp.now_from_then * (inverse(identity)->now_from_then * to_px.now_from_then);
       EXPECT_GE(homogeneous_cost(pairs, other), cost * (1 - 1e-9)) << "seed " << seed;
     }
   }
@@ -155,7 +159,8 @@ TEST(FitPostDivide, OneIterationTooFewIsReported) {
 }
 
 TEST(CeresMaxNorm, EnclosesTheSmallestDisc) {
-  // The largest displacement error of a translation is the radius of the smallest disc around the displacements: 5 here.
+  // The largest displacement error of a translation is the radius of the smallest disc around the
+  // displacements: 5 here.
   const Pairs pairs{{{0, 0}, {10, 0}, {0, 10}, {7, 7}}, {{5, 0}, {5, 0}, {3, 14}, {3, 4}}};
   const FitResult r = ceres_max_norm(pairs.then_px, pairs.now_px, Family::Translation);
   EXPECT_NEAR(r.max_px, 5, 0.05);
@@ -163,7 +168,8 @@ TEST(CeresMaxNorm, EnclosesTheSmallestDisc) {
 }
 
 TEST(CeresMaxNorm, LowersTheLargestErrorOfEveryFamily) {
-  for (Family family : {Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine, Family::Perspective}) {
+  for (Family family :
+       {Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine, Family::Perspective}) {
     const Pairs pairs = moving_box(6, 14);
     const FitResult squares = ceres_max_norm(pairs.then_px, pairs.now_px, family, 1);
     const FitResult largest = ceres_max_norm(pairs.then_px, pairs.now_px, family);

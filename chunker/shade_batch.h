@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Many points of one triangle shaded at once: what shade() gives for each of them, bit by bit.
+///
+/// Interpolation, texture footprints and lights are computed in as many lanes as the processor has; texels
+/// are fetched and mixed one point after the other, four channels at a time.
+
+#include <vector>
+
+#include "chunker/pixel.h"
+#include "chunker/shade.h"
+
+namespace talisman::chunker {
+
+/// Room for the texels of a chunk; `capacity` is more, because lanes beyond the last point are computed and
+/// ignored.
+struct ShadeBatch {
+  static constexpr int kPoints = kChunkSize * kChunkSize;
+  using Row = std::array<float, kPoints>;
+  int count = 0;
+  alignas(64) Row dx{}, dy{};                            ///< in: texels from the triangle's first corner
+  alignas(16) std::array<Float4, kPoints> color{};       ///< out: premultiplied
+  alignas(64) Row one{}, two{};                          ///< λ₁, λ₂
+  alignas(64) Row u{}, v{}, footprint{};                 ///< textured only
+  alignas(64) std::array<Row, 3> diffuse{}, specular{};  ///< Phong only
+};
+
+/// Fills `color` of the first `count` points.
+void shade_batch(const Shader& shader, const Interpolator& t, ShadeBatch& batch);
+
+}  // namespace talisman::chunker
