@@ -212,7 +212,7 @@ ImportedModel read_with_assimp(const std::string& path) {
     const std::string why = importer.GetErrorString();
     throw InputError("cannot be read as a model: " + (why.empty() ? "no reader takes it" : why));
   }
-  Import import{.from = *from, .path = path, .linear_colors = is_gltf(path)};
+  Import import(*from, path, is_gltf(path));
   import_nodes(import, from->mRootNode, -1, "", 0);
   import_materials(import);
   import_meshes(import);

@@ -18,9 +18,11 @@ ImportedModel read_with_assimp(const std::string& path);
 
 /// What the steps of one import have in common.
 struct Import {
+  Import(const aiScene& scene, std::string file, bool linear)
+      : from(scene), path(std::move(file)), linear_colors(linear) {}
   const aiScene& from;
   std::string path;
-  bool linear_colors = false;                        ///< glTF; otherwise colours are sRGB
+  bool linear_colors;                                ///< glTF; otherwise colours are sRGB
   ImportedModel model;
   std::map<const aiNode*, int> node_of;
   std::map<std::string, int> node_named;             ///< the first of that name
