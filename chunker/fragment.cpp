@@ -8,14 +8,8 @@
 namespace talisman::chunker {
 namespace {
 
-/// Half the range of a plane over the 16 samples, and bounds with slack for the rounding of depth_at.
+/// Half the range of a plane over the 16 samples.
 float spread_of(const DepthPlane& p) { return 0.375f * (std::abs(p.dx) + std::abs(p.dy)); }
-
-/// A surface in one sample.
-struct SampleEntry {
-  float depth;
-  const Fragment* surface;
-};
 
 bool in_front(const SampleEntry& a, const SampleEntry& b) {
   return a.depth > b.depth || (a.depth == b.depth && a.surface->order < b.surface->order);
@@ -41,6 +35,8 @@ void insert_sorted(std::vector<SampleEntry>& entries, const SampleEntry& entry) 
 std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b) {
   const float difference = a.z - b.z;
   const float spread = spread_of(a) + spread_of(b);
+  // Beyond the spread, room for the rounding of depth_at: the bounds decide only what sixteen comparisons
+  // would.
   const float slack = spread + 1e-6f * (std::abs(a.z) + std::abs(b.z) + spread);
   if (difference > slack) return kFullMask;
   if (difference < -slack) return 0;
@@ -160,20 +156,19 @@ Float4 FragmentBuffer::resolve_opaque(int texel) const {
 }
 
 Float4 FragmentBuffer::resolve_translucent(int texel) const {
-  const Fragment& base = base_[texel];
   std::array<Float4, kSamples> samples;
   // Sorted once by the depth at the centre: the order in each sample is nearly the same.
-  std::vector<SampleEntry> surfaces, entries;
-  if (has_base(texel)) surfaces.push_back({base.depth.z, &base});
+  surfaces_.clear();
+  if (has_base(texel)) surfaces_.push_back({base_[texel].depth.z, &base_[texel]});
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
-    surfaces.push_back({pool_[i].depth.z, &pool_[i]});
-  std::sort(surfaces.begin(), surfaces.end(), in_front);
+    surfaces_.push_back({pool_[i].depth.z, &pool_[i]});
+  std::sort(surfaces_.begin(), surfaces_.end(), in_front);
   for (int s = 0; s < kSamples; ++s) {
-    entries.clear();
-    for (const SampleEntry& surface : surfaces)
-      if (surface.surface->mask >> s & 1)
-        insert_sorted(entries, {depth_at(surface.surface->depth, s), surface.surface});
-    samples[s] = composite_sorted(entries);
+    entries_.clear();
+    for (const SampleEntry& entry : surfaces_)
+      if (entry.surface->mask >> s & 1)
+        insert_sorted(entries_, {depth_at(entry.surface->depth, s), entry.surface});
+    samples[s] = composite_sorted(entries_);
   }
   return mean_of_samples(samples);
 }

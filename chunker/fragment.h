@@ -40,6 +40,22 @@ struct MergeTolerance {
 /// Samples where a is strictly nearer than b.
 std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b);
 
+/// Front-to-back accumulation of one sample.
+struct SampleSum {
+  Float4 color{0, 0, 0, 0};
+  float through = 1;
+  void add_behind(Float4 c) {
+    color += c * splat(through);
+    through *= 1 - c[3];
+  }
+};
+
+/// A surface in one sample.
+struct SampleEntry {
+  float depth;
+  const Fragment* surface;
+};
+
 enum class Added { Stored, Merged, BecameBase, Refused };
 
 class FragmentBuffer {
@@ -94,16 +110,8 @@ class FragmentBuffer {
   std::int32_t free_ = -1;
   int live_ = 0, limit_ = 0;
   MergeTolerance merge_;
-};
-
-/// Front-to-back accumulation of one sample.
-struct SampleSum {
-  Float4 color{0, 0, 0, 0};
-  float through = 1;
-  void add_behind(Float4 c) {
-    color += c * splat(through);
-    through *= 1 - c[3];
-  }
+  mutable std::vector<SampleEntry> surfaces_,
+      entries_;  ///< of the texel that is being resolved; kept for their memory
 };
 
 /// Pairwise, so that sixteen equal samples give exactly their value.

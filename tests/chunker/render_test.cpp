@@ -56,7 +56,6 @@ FlatScene random_soup(unsigned seed, ivec2 size, int count, bool translucent) {
 }
 
 // --- Against the reference
-// ---------------------------------------------------------------------------------------------------------
 
 TEST(Render, EqualsTheReferenceOnTheWorkloads) {
   for (const layers::Scene& scene : workloads())
@@ -108,7 +107,6 @@ TEST(Render, MergingCostsAtMostOneCodeValue) {
 }
 
 // --- The same bytes always
-// ---------------------------------------------------------------------------------------------------------
 
 TEST(Render, ThreadsDoNotChangeBytesOrCounters) {
   const layers::Scene scene = content::displaced_sphere_scene(20000);
@@ -184,7 +182,6 @@ TEST(Render, AnAnchoredSpriteIsACutOutOfTheDisplay) {
 }
 
 // --- Against known answers
-// ---------------------------------------------------------------------------------------------------------
 
 TEST(Render, CoverageIsTheShareOfSamples) {
   FlatScene half({8, 8});
@@ -285,7 +282,6 @@ TEST(Render, PhongSphereMatchesTheRayTracedOne) {
 }
 
 // --- Facing
-// ------------------------------------------------------------------------------------------------------------------------
 
 TEST(Render, BackFacesAreCulledUnlessTwoSided) {
   FlatScene quad({16, 16});
