@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What does a rendered sprite cost? The workload of the peers' table: a displaced sphere at 1024², 5k / 70k / 500k triangles.
-// Mtri/s counts the triangles of the layer, Mpix/s the display pixels that the sphere covers.
+// What does a rendered sprite cost? The workload of the peers' table: a displaced sphere at 1024², 5k / 70k /
+// 500k triangles. Mtri/s counts the triangles of the layer, Mpix/s the display pixels that the sphere covers.
 #include <numeric>
 
 #include <benchmark/benchmark.h>
@@ -45,7 +45,9 @@ void render_sphere(benchmark::State& state, chunker::Shading shading) {
     benchmark::DoNotOptimize(result);
   }
   const double runs = static_cast<double>(state.iterations());
-  const auto rate = [&](double count) { return benchmark::Counter(count * runs / 1e6, benchmark::Counter::kIsRate); };
+  const auto rate = [&](double count) {
+    return benchmark::Counter(count * runs / 1e6, benchmark::Counter::kIsRate);
+  };
   state.counters["Mtri/s"] = rate(static_cast<double>(result.counters.polygons_in));
   state.counters["Mpix/s"] = rate(static_cast<double>(covered(result.sprite)));
   state.counters["shaded"] = static_cast<double>(result.counters.pixels_shaded);
@@ -57,7 +59,13 @@ void render_sphere(benchmark::State& state, chunker::Shading shading) {
 void RenderGouraud(benchmark::State& state) { render_sphere(state, chunker::Shading::Gouraud); }
 void RenderPhong(benchmark::State& state) { render_sphere(state, chunker::Shading::Phong); }
 
-BENCHMARK(RenderGouraud)->ArgsProduct({{5000, 70000, 500000}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(RenderPhong)->ArgsProduct({{5000, 70000, 500000}, {1}})->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RenderGouraud)
+    ->ArgsProduct({{5000, 70000, 500000}, {1, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(RenderPhong)
+    ->ArgsProduct({{5000, 70000, 500000}, {1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
