@@ -37,7 +37,8 @@ void import_lights(Import& import);                  ///< import_motion.cpp
 void import_cameras(Import& import);                 ///< import_motion.cpp
 
 /// The file that a model means by a texture's name: as written, relative to the model, by its base name beside the model and in
-/// ../textures and ./textures, in any letter case, and with the stem cut to 8 characters. Empty if there is none.
+/// ../textures and ./textures, in any letter case, with the stem cut to 8
+/// characters, and at last with another extension. Empty if there is none.
 std::string find_texture(const std::string& model_path, const std::string& written);
 
 inline layers::dvec3 to_vector(const aiVector3D& v) { return {v.x, v.y, v.z}; }

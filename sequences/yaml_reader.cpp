@@ -51,8 +51,11 @@ std::string YamlValue::written() const {
   return node_->IsMap() ? "a map" : "nothing";
 }
 
+int YamlValue::line() const { return node_->Mark().line + 1; }
+
 void YamlValue::fail(const std::string& rule) const {
-  throw InputError(path_ + " is " + written() + ", rule: " + rule, file_, node_->Mark().line + 1);
+  const std::string what = path_.empty() ? "the file" : path_;
+  throw InputError(what + " is " + written() + ", rule: " + rule, file_, line());
 }
 
 double YamlValue::number(const Range& range) const {

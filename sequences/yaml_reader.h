@@ -58,6 +58,7 @@ class YamlValue {
   /// "what, the value, the rule" with file and line.
   [[noreturn]] void fail(const std::string& rule) const;
   const std::string& file() const { return file_; }
+  int line() const;                                ///< from 1
 
  private:
   std::string written() const;
