@@ -38,4 +38,11 @@ FitResult fit_max_norm(std::span<const dvec2> then_px, std::span<const dvec2> no
 FitResult fit_max_norm_homogeneous(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
                                    const FitOptions& options);
 
+/// Certified bounds of that optimum: of maxᵢ denᵢ ‖W(p̂ᵢ) - pᵢ‖, px times the denominator.
+struct HomogeneousBounds {
+  double lower = 0, upper = 0;
+};
+FitResult fit_max_norm_homogeneous(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
+                                   const FitOptions& options, HomogeneousBounds* bounds);
+
 }  // namespace talisman::warp
