@@ -58,14 +58,20 @@ struct LayerSet {
   int unassigned_parts = 0;        ///< parts that no layer takes; they are not drawn
 };
 
-/// True if `text` matches `glob`.
+/// True if `text` matches `glob`: '*' is any run of characters, "/" and none included, '?' is one. Cost: O(glob · text).
 bool glob_matches(const std::string& glob, const std::string& text);
 
-/// Layers from the author's specs. A part belongs to the first layer that takes it. Cost: O(specs · parts).
+/// Layers from the author's specs, one per spec in the same order. A part belongs to the first layer that takes it. Defects: a glob
+/// that matches no part, a layer that is left without parts, a name used twice, a preference out of its range; the layers are returned
+/// all the same. `rigid_node` is the deepest node above all parts (or theirs) if nothing between it and them moves by a track; for parts
+/// that stand still in separate trees any of their nodes; tracks whose keys are all equal do not count.
+/// Cost: O(globs with wildcards · parts + globs + parts).
 LayerSet factor(const Scene& scene, std::span<const LayerSpec> specs);
 
-/// One layer per moving node (its subtree without other moving nodes) or, in a scene at rest, per top-level node that
-/// carries parts; names from the nodes (made unique). Used for bare models.
+/// One layer per moving node (its subtree without other moving nodes); parts at rest by their top-level node, where a root (or a chain of
+/// them) that only holds the scene together does not count as a level; skinned parts by the top-level node of their joints, so that a
+/// figure of several skins stays one layer. Names from the nodes, made unique by "#2". Used for bare models; `factor` of the result has
+/// no defect and leaves no part over.
 std::vector<LayerSpec> default_layer_specs(const Scene& scene);
 
 /// One triangle soup box per layer for sorting: world-space axis-aligned bounds at one time.
@@ -75,8 +81,13 @@ struct WorldBounds {
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
 };
 
-/// Layer ids from back to front: groups in order; inside a group by separating planes of the world bounds along the axes as seen from the
-/// eye, else by distance of the bounds' nearest points, else by id. Deterministic; ties go to the lower id first.
+/// Layer ids from back to front: groups in order; inside a group by who can occlude whom, as seen from the eye:
+///   boxes with an axis plane between them: the one on the eye's side can occlude the other, never the reverse (certain);
+///   boxes that overlap by less than half of the thinner one along some axis: as if they touched in the middle of the overlap (likely);
+///   boxes that overlap more: farthest point first, then nearest point, then id (likely). Not the nearest point first: a terrain or a
+///   room, whose box contains the eye or what stands in it, would hide all of it.
+/// A cycle is sorted again by what is certain; what then still is cyclic, by distance as above. Layers with empty bounds come first in
+/// their group. Deterministic. Cost: O(n²) pair tests, O(n) memory.
 std::vector<int> back_to_front(const dvec3& eye, std::span<const Layer> layers, std::span<const WorldBounds> bounds);
 
 }  // namespace talisman::layers

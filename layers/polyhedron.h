@@ -1,12 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Characteristic bounding polyhedra [LS97 3.1].
+/// Which few points stand for the motion of a whole layer? Characteristic bounding polyhedra [LS97 3.1].
 ///
 /// The motion of a layer is tracked by a small convex polyhedron around its geometry. Its vertices are the
-/// characteristic points. For a rigid layer they are fixed in the space of the node that carries it; for a layer whose
-/// parts deform or move against each other they are recomputed at each time, with the same indices (point i always is the same
-/// corner of the same set of planes), so that point i then and point i now can be matched.
+/// characteristic points. For a rigid layer they are fixed in the space of the node that carries it; for a
+/// layer whose parts deform or move against each other they are recomputed at each time, with the same
+/// indices (point i always is the same corner of the same set of planes), so that point i then and point i
+/// now can be matched.
+///
+/// All kinds are one construction: a box with its corners and edges cut. With u the distances (metres, ≥ 0)
+/// of a point from the three box planes that meet in corner s, the cuts are the supports over the points
+///
+///   k(s)    = min (u_a + u_b + u_c)      how deep corner s can be cut
+///   e(s,c)  = min (u_a + u_b)            how deep the edge through s along axis c can be cut
+///
+/// and the vertex of face a, edge (a, b) and corner s lies at u_a = 0, u_b = e(s,c), u_c = k(s) - e(s,c). The
+/// cuts are then made shallower, never deeper, until no two of them cross, so that the topology holds for
+/// every point set:
+///
+///   k(s) + k(s') - 2 e(s,c) ≤ length of axis c   for the corners s, s' at the ends of every edge, and
+///   e(s,b) + e(s,c) ≤ k(s)                       for every two edges at a corner.
 
 #include <array>
 #include <span>
@@ -16,30 +30,44 @@
 
 namespace talisman::layers {
 
-/// Which planes bound the layer. Box8: 6 planes, 8 points. Dop14: box with its corners cut, 14 planes, 24 points.
-/// Dop26: corners and edges cut, 26 planes, 48 points. More planes follow the shape more tightly and cost time in every fit.
+/// Which planes bound the layer. Box8: 6 planes, 8 points, 12 triangles. Dop14: box with its corners cut, 14
+/// planes, 24 points, 44 triangles. Dop26: corners and edges cut, 26 planes, 48 points, 92 triangles. More
+/// planes follow the shape more tightly and cost time in every fit. Plane normals are (±1, 0, 0), (±1, ±1,
+/// ±1), (±1, ±1, 0) and permutations.
 enum class BoundKind { Box8, Dop14, Dop26 };
 
 /// A closed convex polyhedron with fixed topology per kind (degenerate edges and faces are allowed).
 struct Polyhedron {
   std::vector<dvec3> points;
-  std::vector<std::array<int, 3>> triangles;  ///< fan triangulation of the faces, counter-clockwise from outside
+  /// Fan triangulation of the faces, counter-clockwise from outside.
+  std::vector<std::array<int, 3>> triangles;
 };
 
-/// The bounding polyhedron of a point set: contains every point (to rounding, 1e-9 of the extent). An empty or non-finite
-/// set gives no points. Cost: O(points · planes).
+/// The bounding polyhedron of a point set: contains every point (to rounding, 1e-9 of the extent). An empty
+/// or non-finite set gives no points and no triangles. Cost: O(points · planes).
 Polyhedron bounding_polyhedron(std::span<const dvec3> points, BoundKind kind);
+
+/// The triangles that all polyhedra of a kind share.
+std::span<const std::array<int, 3>> topology(BoundKind kind);
 
 /// The characteristic polyhedron of one layer.
 struct LayerBound {
   BoundKind kind = BoundKind::Box8;
-  int node = -1;        ///< space of `hull.points`; -1: world, and the points are recomputed at each time
-  Polyhedron hull;      ///< points are valid when node ≥ 0; the triangles always are
+  int node = -1;         ///< space of `hull.points`; -1: world
+  int axes_node = -1;    ///< where the points are recomputed: planes follow its axes; -1: the world's
+  bool at_rest = false;  ///< nothing in the layer moves: `hull.points` are world points at every time
+  Polyhedron hull;       ///< points are valid when fixed(); the triangles always are
+
+  bool fixed() const { return node >= 0 || at_rest; }
 };
 
+/// Fixed in `layer.rigid_node` where the layer has one, fixed in the world where nothing in it moves.
+/// Otherwise the points are recomputed, along the axes of the lowest node above all its parts and joints, so
+/// that the polyhedron turns with a layer that turns as a whole.
 LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind);
 
-/// World positions of the characteristic points at `frame`. Cost: O(points) if rigid, else O(vertices of the layer).
+/// World positions of the characteristic points at `frame`; none if the layer has no vertices or they are not
+/// finite. Cost: O(points) if fixed, else O(vertices of the layer).
 std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, const LayerBound& bound);
 
 }  // namespace talisman::layers

@@ -34,7 +34,7 @@ struct Mesh {
   std::vector<vec3> colors;                ///< linear, multiplied with the base colour
   std::vector<std::uint32_t> indices;      ///< three per triangle
   std::vector<glm::uvec4> joints;          ///< skinning: indices into Skin::joints
-  std::vector<vec4> weights;               ///< skinning: sum 1
+  std::vector<vec4> weights;               ///< skinning: ≥ 0; divided by their sum where they are used
   int triangle_count() const { return static_cast<int>(indices.size() / 3); }
 };
 
@@ -115,14 +115,15 @@ struct TransformTrack {
 };
 
 /// A flight along a spline (centripetal Catmull-Rom through the positions). The node's -z looks along the
-/// tangent, or at `target` where that is given; positive bank rolls to the right.
+/// tangent, or at `target` where that is given; positive bank rolls to the right. Positions and targets are in the space of the
+/// node's parent. Where the direction is lost (standing still, at the target, straight up or down) see layers/animation.h.
 struct FlightTrack {
   Keys<dvec3> position;
   Keys<dvec3> target;                      ///< empty: look along the path
   Keys<double> bank_rad;                   ///< empty: level
 };
 
-/// The node turns with constant rate about an axis through its own origin.
+/// The node turns with constant rate about an axis through its own origin, given in its own space.
 struct SpinTrack {
   dvec3 axis{0, 1, 0};
   double rate_rad_per_s = 1;
@@ -180,7 +181,9 @@ struct Scene {
   vec3 background{0, 0, 0};                ///< linear, behind all layers
   int active_camera = 0;
 
-  /// The scene at time `t_s` (any finite value; tracks hold or loop outside their keys). Pure.
+  /// The scene at time `t_s` (any finite value; tracks hold or loop outside their keys). Pure, and finite for a scene
+  /// without defects (a product of matrices that overflows leaves the node with its parent). Tracks of one node apply in their order.
+  /// The camera's matrix is rigid: a scale above its node does not scale its near plane.
   /// Cost: O(nodes + tracks · log keys).
   SceneFrame at(double t_s) const;
 
@@ -189,17 +192,18 @@ struct Scene {
 };
 
 /// World positions of a part's vertices at `frame`: node transform, or linear-blend skinning where the part has a
-/// skin. Cost: O(vertices).
+/// skin: p' = Σ wₖ Mₖ p / Σ wₖ; a vertex whose weights are all 0 follows the first joint it names. Cost: O(vertices).
 std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part);
 
 /// World-from-vertex matrix of each joint of a skinned part: world_from_joint · joint_from_mesh.
 std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part);
 
-/// Does the part's geometry change its shape (skin), or does its node or an ancestor move by a track?
+/// Does `node` or an ancestor move by a track? A track whose keys are all equal moves nothing. (A skinned part moves with its joints
+/// whatever its node does.) Cost: O(depth · tracks).
 bool is_animated(const Scene& scene, int node);
 
 /// First broken rule of the scene in words ("mesh 'hull': index 812 of triangle 270, rule: below 811 vertices"), or an
-/// empty string. Checks indices, array lengths, finite numbers, parent order, key order. Readers call it on whatever they read.
+/// empty string. Checks indices, array lengths, finite numbers, parent order, key order. Parts need a node, a mesh and a material. Readers call it on whatever they read.
 std::string first_defect(const Scene& scene);
 
 }  // namespace talisman::layers

@@ -3,11 +3,24 @@
 
 /// What one layer looked like at one instant, and how two instants correspond.
 ///
-/// A `LayerState` holds all that determines a layer's pixels. `then` always is the state at the layer's last *render*,
-/// never the last frame. `correspond(then, now)` gives the matched screen positions of material points from which a
-/// warp is fitted: the characteristic points where the whole polyhedron is in view in both states, and otherwise the
-/// vertices of the polyhedron clipped to the enlarged frustum, for each state's own clip, as the same material points
-/// in both states [LS97 3.1, Fig. 13]. A point with w ≤ near in either state never enters.
+/// A `LayerState` holds all that determines a layer's pixels. `then` always is the state at the layer's last
+/// *render*, never the last frame. `correspond(then, now)` gives the matched screen positions of material
+/// points from which a warp is fitted.
+///
+/// Which points [LS97 3.1, Fig. 13]. Where the whole polyhedron is in the enlarged view in both states: its
+/// vertices, the characteristic points. Otherwise the vertices of that part of the polyhedron's surface that
+/// is in the enlarged view *in both states*: its triangles are clipped by the five half-spaces of `then` and
+/// the five of `now` (layers/clip.h), and every vertex that results (kept vertex, crossing of an edge, edge
+/// of a view that pierces a triangle) is one material point, evaluated in both states. Why both: what was out
+/// of the enlarged view then is not in the old sprite, and what is out of it now is not on the display, so an
+/// error there is no error; yet such a point may lie thousands of pixels away, and a single one would govern
+/// the fit. In this way every point lies within the enlarged display in both states, and at rest the points
+/// are those of either view alone. Content that was not in the old sprite is the business of the visibility
+/// fiducial, not of the fit.
+///
+/// Where no part is in both views there is nothing to fit. Then `overlap` is false, and the points are those
+/// that are in view in either state, however far away they are in the other: the error they give is large,
+/// and true. A point with w ≤ near in either state never enters.
 
 #include <span>
 #include <vector>
@@ -19,11 +32,15 @@ namespace talisman::layers {
 /// The display as the decision side sees it.
 struct View {
   ivec2 display_px{1024, 1024};
-  double clip_margin = 0.25;   ///< the frustum to which polyhedra are clipped is larger by this share of the display on each
-                               ///< side; range 0 … 1; more keeps sprites longer and makes the error bound looser
+  /// The view to which polyhedra are clipped is larger by this share of the display on each side. Range 0 …
+  /// 1; more keeps sprites longer and makes the error bound looser. Not less than ExtentOptions::max_growth,
+  /// or sprites reach beyond the points of their fit.
+  double clip_margin = 0.25;
+  bool operator==(const View&) const = default;
 };
 
-/// clip = clip_from_world · world; x and y in -w … w span the display, depth -w … w from near to far (OpenGL convention).
+/// clip = clip_from_world · world; x and y in -w … w span the display (y up), depth -w … w from near to far
+/// (OpenGL convention); w is the depth along the view axis. A display without area counts as one of 1 × 1.
 dmat4 clip_from_world(const CameraState& camera, ivec2 display_px);
 
 /// Display position of a clip-space point with w > 0.
@@ -34,35 +51,42 @@ struct LayerState {
   double time_s = 0;
   View view;
   CameraState camera;
-  std::vector<dvec3> world_points;       ///< characteristic points
-  std::vector<dvec4> clip_points;        ///< the same in clip space
-  std::vector<dmat4> world_from_part;    ///< node matrix of each part, joint palettes appended for skinned parts
-  std::vector<LightState> lights;        ///< empty where no part of the layer is lit
-  RectD screen_bounds_px;                ///< of the polyhedron clipped to the enlarged frustum; empty: out of view
-  bool touches_display = false;          ///< screen_bounds_px overlaps the display itself
-  bool clipped = false;                  ///< the polyhedron crosses the enlarged frustum's sides or the near plane
-  double nearest_w_m = 0;                ///< smallest w (depth along the view axis) of the clipped polyhedron
+  std::vector<dvec3> world_points;     ///< characteristic points; none if empty or not finite
+  std::vector<dvec4> clip_points;      ///< the same in clip space
+  std::vector<dmat4> world_from_part;  ///< of each part's node, joint palettes of skinned parts appended
+  std::vector<LightState> lights;      ///< empty where no part of the layer is lit
+  RectD screen_bounds_px;              ///< of the polyhedron clipped to the enlarged view; empty: out of view
+  bool touches_display = false;        ///< screen_bounds_px overlaps the display itself
+  bool clipped = false;                ///< part of the polyhedron is in the enlarged view, and part is not
+  double nearest_w_m = 0;  ///< smallest w (depth along the view axis) of the clipped solid; 0: out of view
 
-  /// True if the two states would be rendered to the same pixels: same camera, view, part matrices and lights.
-  /// The time is not compared.
+  bool in_view() const { return !screen_bounds_px.empty(); }
+  /// True if the two states would be rendered to the same pixels: same layer, camera, view, part matrices and
+  /// lights, compared exactly. The time is not compared. NaN is never the same.
   bool same_pixels(const LayerState& other) const;
 };
 
-/// Cost: O(characteristic points) for a rigid layer inside the view; clipping adds O(triangles · 6).
+/// The state of `layer` at `frame`. A camera or geometry that is not finite, near ≤ 0, or a display without
+/// area gives a state out of view. Cost: O(characteristic points) for a fixed bound inside the view; clipping
+/// adds O(triangles · 5).
 LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound& bound, const View& view);
 
-/// Matched screen points of the same material points, in pixels. Only finite points with w > near in both states.
+/// Matched screen points of the same material points, in pixels. Only finite points with w > near in both
+/// states.
 struct Correspondences {
   std::vector<dvec2> then_px;
   std::vector<dvec2> now_px;
-  std::vector<int> point;      ///< index of the characteristic point, or -1 for a point made by clipping
+  std::vector<int> point;  ///< index of the characteristic point, or -1 for a point made by clipping
+  bool overlap = false;    ///< some part of the polyhedron is in the enlarged view in both states; false:
+                         ///< nothing of what the old sprite shows is in view now, and no warp of it can serve
 };
 
-/// Cost: O(characteristic points) if neither state is clipped; else O(hull triangles · 6) for each clipped state.
+/// The order is that of the polyhedron's points or triangles, the same for every run. Cost: O(characteristic
+/// points) if neither state is clipped; else O(hull triangles · 10).
 Correspondences correspond(const LayerState& then, const LayerState& now, const Polyhedron& hull);
 
-/// The screen positions of the vertices of the polyhedron clipped to the enlarged frustum (all characteristic points
-/// when nothing is clipped).
+/// The screen positions of the vertices of the polyhedron's surface clipped to the enlarged view (all
+/// characteristic points when nothing is clipped).
 std::vector<dvec2> clipped_screen_points(const LayerState& state, const Polyhedron& hull);
 
 /// World bounds of the characteristic points, for sorting.

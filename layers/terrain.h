@@ -3,9 +3,10 @@
 
 /// Height-map terrain, cut into segments [LS97 7.2: split landscape, expanded along the split].
 ///
-/// A grid of heights becomes meshes of at most `cells_per_segment` rows each. Adjacent segments overlap by `seam_cells` rows so that
-/// small separations of their warped sprites do not open a crack. Grid column 0 … is x, row 0 … is -z (rows run away from a viewer who
-/// looks along -z); both are centred in x and start at z = 0.
+/// A grid of heights becomes meshes of at most `cells_per_segment` rows each, of about equal size. Each segment reaches over its far
+/// border by `seam_cells` rows, so that small separations of the warped sprites do not open a crack. Grid column 0 … is x, row 0 … is
+/// -z (rows run away from a viewer who looks along -z); both are centred in x and start at z = 0. Vertices that two segments share are
+/// bit-identical.
 
 #include <vector>
 
@@ -21,11 +22,12 @@ struct HeightField {
 
 struct TerrainOptions {
   int cells_per_segment = 100;        ///< rows of cells per segment, ≥ 1
-  int seam_cells = 1;                 ///< rows by which a segment reaches over each inner border, ≥ 0; hides cracks of about that size, costs polygons
+  int seam_cells = 1;                 ///< rows by which neighbours overlap, ≥ 0; hides cracks of about that size, costs
+                                      ///< 2 · columns polygons per row and inner border
 };
 
-/// One mesh per segment: positions, smooth normals (computed on the whole grid, so that seams do not show in the shading), uvs in 0 … 1 over the
-/// whole field (u along x, v along -z... v = 0 at row 0).
+/// One mesh per segment ("terrain_0", the nearest, …): positions, smooth normals (computed on the whole grid, so that seams do not show in
+/// the shading), uvs in 0 … 1 over the whole field (u along x, v along -z, v = 0 at row 0). Triangles face up.
 std::vector<Mesh> terrain_segments(const HeightField& field, const TerrainOptions& options);
 
 }  // namespace talisman::layers

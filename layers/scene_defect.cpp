@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <type_traits>
+
+#include <glm/gtc/quaternion.hpp>
+
+#include "layers/scene.h"
+
+namespace talisman::layers {
+
+namespace {
+
+// Each check returns the first broken rule of one item, without the item's name ("position 7 is nan, rule:
+// finite"), or an empty string. `first_defect` puts the name in front.
+
+template <typename... Pieces>
+std::string text(const Pieces&... pieces) {
+  std::ostringstream out;
+  (out << ... << pieces);
+  return out.str();
+}
+
+template <typename... Pieces>
+std::string broken(const std::string& rule, const Pieces&... what) {
+  return text(what..., ", rule: ", rule);
+}
+
+/// The first component that is not finite, or nothing wrong.
+template <typename V>
+std::string finite(const std::string& what, const V& v) {
+  if constexpr (std::is_arithmetic_v<V>) {
+    if (!std::isfinite(v)) return broken("finite", what, " is ", v);
+  } else {
+    for (int i = 0; i < v.length(); ++i)
+      if (!std::isfinite(v[i])) return broken("finite", what, " has component ", v[i]);
+  }
+  return {};
+}
+
+template <typename V>
+std::string finite_array(const char* what, const std::vector<V>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i)
+    for (int k = 0; k < values[i].length(); ++k)
+      if (!std::isfinite(values[i][k]))
+        return broken("finite", what, " ", i, " has component ", values[i][k]);
+  return {};
+}
+
+template <typename Size>
+std::string index_in(const char* what, int index, Size size, bool or_none) {
+  const int lowest = or_none ? -1 : 0;
+  if (index >= lowest && index < static_cast<int>(size)) return {};
+  return broken(text("from ", lowest, " to below ", size), what, " ", index);
+}
+
+std::string color_defect(const char* what, const vec3& color) {
+  if (auto defect = finite(what, color); !defect.empty()) return defect;
+  for (int k = 0; k < 3; ++k)
+    if (color[k] < 0) return broken("at least 0", what, " has component ", color[k]);
+  return {};
+}
+
+/// The first of several findings.
+std::string first_of(std::initializer_list<std::string> findings) {
+  for (const std::string& finding : findings)
+    if (!finding.empty()) return finding;
+  return {};
+}
+
+// --- Meshes ---
+
+std::string optional_length(const char* what, std::size_t length, std::size_t positions) {
+  if (length == 0 || length == positions) return {};
+  return broken(text("none or as many as positions, ", positions), length, " ", what);
+}
+
+std::string index_array_defect(const Mesh& mesh) {
+  if (mesh.indices.size() % 3 != 0) return broken("three per triangle", mesh.indices.size(), " indices");
+  for (std::size_t i = 0; i < mesh.indices.size(); ++i)
+    if (mesh.indices[i] >= mesh.positions.size())
+      return broken(text("below ", mesh.positions.size(), " vertices"), "index ", mesh.indices[i],
+                    " of triangle ", i / 3);
+  return {};
+}
+
+std::string weight_defect(const Mesh& mesh) {
+  if (mesh.joints.size() != mesh.weights.size())
+    return broken("as many joints as weights", mesh.joints.size(), " joints and ", mesh.weights.size(),
+                  " weights");
+  for (std::size_t i = 0; i < mesh.weights.size(); ++i)
+    for (int k = 0; k < 4; ++k)
+      if (mesh.weights[i][k] < 0)
+        return broken("at least 0", "weight of vertex ", i, " is ", mesh.weights[i][k]);
+  return {};
+}
+
+std::string defect_of(const Scene&, const Mesh& mesh) {
+  const std::size_t n = mesh.positions.size();
+  return first_of(
+      {optional_length("normals", mesh.normals.size(), n), optional_length("uvs", mesh.uvs.size(), n),
+       optional_length("colors", mesh.colors.size(), n), optional_length("joints", mesh.joints.size(), n),
+       optional_length("weights", mesh.weights.size(), n), finite_array("position", mesh.positions),
+       finite_array("normal", mesh.normals), finite_array("uv", mesh.uvs), finite_array("color", mesh.colors),
+       finite_array("weight", mesh.weights), index_array_defect(mesh), weight_defect(mesh)});
+}
+
+// --- Surfaces ---
+
+std::string defect_of(const Scene&, const Texture& texture) {
+  if (texture.width < 1 || texture.height < 1)
+    return broken("at least 1 × 1", "size ", texture.width, " × ", texture.height);
+  const std::size_t bytes = 4 * static_cast<std::size_t>(texture.width) * texture.height;
+  if (texture.rgba.size() == bytes) return {};
+  return broken(text("4 · width · height = ", bytes), texture.rgba.size(), " bytes");
+}
+
+std::string range_defect(const char* what, double value, double low, double high) {
+  if (value >= low && value <= high) return {};
+  return broken(text("from ", low, " to ", high), what, " ", value);
+}
+
+std::string defect_of(const Scene& scene, const Material& material) {
+  return first_of(
+      {color_defect("base color", material.base_color), color_defect("specular color", material.specular),
+       color_defect("emissive color", material.emissive), range_defect("opacity", material.opacity, 0, 1),
+       finite("shininess", material.shininess), range_defect("shininess", material.shininess, 0, HUGE_VAL),
+       index_in("texture", material.texture, scene.textures.size(), true)});
+}
+
+// --- Nodes and their motion ---
+
+std::string rotation_defect(const std::string& what, const glm::dquat& q) {
+  if (auto defect = finite(what, q); !defect.empty()) return defect;
+  if (q.w == 0 && q.x == 0 && q.y == 0 && q.z == 0) return broken("not zero", what, " is zero");
+  return {};
+}
+
+std::string defect_of(const Scene& scene, const Skin& skin) {
+  if (skin.joints.size() != skin.joint_from_mesh.size())
+    return broken("as many", skin.joints.size(), " joints and ", skin.joint_from_mesh.size(), " matrices");
+  for (std::size_t i = 0; i < skin.joints.size(); ++i) {
+    if (auto d = index_in("joint node", skin.joints[i], scene.nodes.size(), false); !d.empty()) return d;
+    for (int column = 0; column < 4; ++column)
+      if (auto d = finite(text("matrix of joint ", i), skin.joint_from_mesh[i][column]); !d.empty()) return d;
+  }
+  return {};
+}
+
+std::string defect_of(const Scene& scene, const Node& node) {
+  const auto own_index = &node - scene.nodes.data();
+  if (node.parent < -1 || node.parent >= own_index)
+    return broken(text("-1 or a node before it, below ", own_index), "parent ", node.parent);
+  return first_of({finite("translation", node.local.translation),
+                   rotation_defect("rotation", node.local.rotation), finite("scale", node.local.scale)});
+}
+
+template <typename T>
+std::string value_defect(const std::string& what, const T& value) {
+  if constexpr (std::is_same_v<T, glm::dquat>)
+    return rotation_defect(what, value);
+  else
+    return finite(what, value);
+}
+
+template <typename T>
+std::string keys_defect(const std::string& channel, const Keys<T>& keys) {
+  const auto& times = keys.times_s;
+  if (times.size() != keys.values.size())
+    return broken("as many", channel, " has ", times.size(), " times and ", keys.values.size(), " values");
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (auto d = finite(text(channel, " time ", i), times[i]); !d.empty()) return d;
+    if (i > 0 && !(times[i - 1] < times[i]))
+      return broken(text("above the one before, ", times[i - 1]), channel, " time ", i, " is ", times[i]);
+    if (auto d = value_defect(text(channel, " key ", i), keys.values[i]); !d.empty()) return d;
+  }
+  return {};
+}
+
+std::string motion_defect(const TransformTrack& track) {
+  return first_of({keys_defect("translation", track.translation), keys_defect("rotation", track.rotation),
+                   keys_defect("scale", track.scale)});
+}
+
+std::string motion_defect(const FlightTrack& track) {
+  if (track.position.values.empty()) return broken("at least 1", "flight with 0 positions");
+  return first_of({keys_defect("position", track.position), keys_defect("target", track.target),
+                   keys_defect("bank", track.bank_rad)});
+}
+
+std::string motion_defect(const SpinTrack& track) {
+  if (track.axis == dvec3{0, 0, 0}) return broken("not zero", "spin axis is zero");
+  return first_of({finite("spin axis", track.axis), finite("spin rate", track.rate_rad_per_s)});
+}
+
+std::string defect_of(const Scene& scene, const Track& track) {
+  if (auto d = index_in("node", track.node, scene.nodes.size(), false); !d.empty()) return d;
+  return std::visit([](const auto& motion) { return motion_defect(motion); }, track.motion);
+}
+
+// --- What shows the scene ---
+
+std::string defect_of(const Scene& scene, const Light& light) {
+  if (light.kind == Light::Kind::Directional && light.direction == dvec3{0, 0, 0})
+    return broken("not zero", "direction is zero");
+  return first_of({index_in("node", light.node, scene.nodes.size(), true), finite("position", light.position),
+                   finite("direction", light.direction), color_defect("color", light.color)});
+}
+
+std::string defect_of(const Scene& scene, const Camera& camera) {
+  if (!(camera.fov_y_rad > 0 && camera.fov_y_rad < 3.14159265358979))
+    return broken("above 0 and below pi", "fov_y_rad ", camera.fov_y_rad);
+  if (!(camera.near_m > 0 && camera.near_m < camera.far_m && std::isfinite(camera.far_m)))
+    return broken("0 < near < far, finite", "near_m ", camera.near_m, " and far_m ", camera.far_m);
+  return index_in("node", camera.node, scene.nodes.size(), true);
+}
+
+std::string skinned_part_defect(const Scene& scene, const Part& part) {
+  const Mesh& mesh = scene.meshes[part.mesh];
+  const std::size_t joints = scene.skins[part.skin].joints.size();
+  if (mesh.joints.size() != mesh.positions.size())
+    return broken("a skinned part's mesh has joints", "mesh ", part.mesh, " has ", mesh.joints.size(),
+                  " joints");
+  for (std::size_t i = 0; i < mesh.joints.size(); ++i)
+    for (int k = 0; k < 4; ++k)
+      if (mesh.joints[i][k] >= joints)
+        return broken(text("below ", joints, " of its skin"), "joint ", mesh.joints[i][k], " of vertex ", i);
+  return {};
+}
+
+std::string defect_of(const Scene& scene, const Part& part) {
+  const std::string defect = first_of({index_in("node", part.node, scene.nodes.size(), false),
+                                       index_in("mesh", part.mesh, scene.meshes.size(), false),
+                                       index_in("material", part.material, scene.materials.size(), false),
+                                       index_in("skin", part.skin, scene.skins.size(), true)});
+  return defect.empty() && part.skin >= 0 ? skinned_part_defect(scene, part) : defect;
+}
+
+const std::string& name_of(const Scene& scene, const Track& track) {
+  static const std::string kNone;
+  const bool known = track.node >= 0 && track.node < static_cast<int>(scene.nodes.size());
+  return known ? scene.nodes[track.node].name : kNone;
+}
+template <typename Item>
+const std::string& name_of(const Scene&, const Item& item) {
+  return item.name;
+}
+
+template <typename Item>
+std::string first_in(const Scene& scene, const char* kind, const std::vector<Item>& items) {
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const std::string defect = defect_of(scene, items[i]);
+    if (defect.empty()) continue;
+    const std::string& name = name_of(scene, items[i]);
+    return name.empty() ? text(kind, " ", i, ": ", defect) : text(kind, " '", name, "': ", defect);
+  }
+  return {};
+}
+
+std::string scene_defect(const Scene& scene) {
+  const std::string background = color_defect("background", scene.background);
+  if (!background.empty()) return "scene: " + background;
+  if (scene.cameras.empty()) return {};  // seen from the origin
+  const std::string camera = index_in("active camera", scene.active_camera, scene.cameras.size(), false);
+  return camera.empty() ? camera : "scene: " + camera;
+}
+
+}  // namespace
+
+std::string first_defect(const Scene& scene) {
+  // All are looked at, so each check guards its own indices and may not rely on the ones before it.
+  return first_of({first_in(scene, "mesh", scene.meshes), first_in(scene, "texture", scene.textures),
+                   first_in(scene, "material", scene.materials), first_in(scene, "node", scene.nodes),
+                   first_in(scene, "skin", scene.skins), first_in(scene, "track of node", scene.tracks),
+                   first_in(scene, "light", scene.lights), first_in(scene, "camera", scene.cameras),
+                   first_in(scene, "part", scene.parts), scene_defect(scene)});
+}
+
+}  // namespace talisman::layers

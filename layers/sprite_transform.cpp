@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/sprite_transform.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "layers/outline.h"
+
+namespace talisman::layers {
+namespace {
+
+/// Rounding of coordinates (texels) that must not cost a texel nor raise a flag.
+constexpr double kSliver = 1e-6;
+constexpr int kPadding = 1;
+/// Padding on both sides, and what rounding to whole texels adds at most on both sides.
+constexpr double kMargins = 2 * kPadding + 2;
+
+/// A value outside its range counts as the nearest end, NaN as the default.
+double in_range(double value, double lo, double hi, double fallback) {
+  return std::isnan(value) ? fallback : std::clamp(value, lo, hi);
+}
+
+/// The sample lattice of one direction and density, anchored at the display's origin.
+struct Lattice {
+  double cos = 1, sin = 0;
+  double density = 1;
+  bool axis_aligned() const { return sin == 0; }
+  /// Texels are pixels.
+  bool is_flush() const { return axis_aligned() && density == 1; }
+
+  dvec2 operator()(dvec2 p) const {
+    return {density * (cos * p.x + sin * p.y), density * (cos * p.y - sin * p.x)};
+  }
+  RectD bounds(const std::vector<dvec2>& points) const {
+    RectD result;
+    for (const dvec2 p : points) result.include((*this)(p));
+    return result;
+  }
+  Affine2 screen_from_sprite(int x0, int y0) const {
+    const double c = cos / density, s = sin / density;
+    return {c, 0 - s, c * x0 - s * y0, s, c, s * x0 + c * y0};
+  }
+};
+
+double padded_area(const RectD& r) { return (r.width() + 2 * kPadding) * (r.height() + 2 * kPadding); }
+
+/// The slab direction with the least area [LS97 3.3]; the axes unless that saves the share that was asked
+/// for.
+Lattice choose_direction(const std::vector<dvec2>& shown, const PlacementOptions& options, double density) {
+  const int directions = std::clamp(options.slab_directions, 2, 30);
+  const Lattice axes{1, 0, density};
+  Lattice best = axes;
+  double best_area = padded_area(axes.bounds(shown));
+  const double gain = in_range(options.min_rotation_gain, 0, 1, PlacementOptions{}.min_rotation_gain);
+  const double area_to_rotate = (1 - gain) * best_area;
+  for (int k = 1; k < directions; ++k) {
+    const double angle = k * (std::numbers::pi / 2) / directions;
+    const Lattice rotated{std::cos(angle), std::sin(angle), density};
+    const double area = padded_area(rotated.bounds(shown));
+    if (area >= best_area || area > area_to_rotate) continue;
+    best = rotated;
+    best_area = area;
+  }
+  return best;
+}
+
+/// The density at which the larger side of `shown` takes `max_px` texels with its margins, if that is less
+/// than its own.
+double density_within(const RectD& shown, double density, int max_px) {
+  const double larger = std::max(shown.width(), shown.height());
+  return larger + kMargins > max_px ? density * (max_px - kMargins) / larger : density;
+}
+
+/// Speed (px per frame, ≥ 0) with which content moves in over the low (sign = 1) or high (sign = -1) side of
+/// an axis: the fastest of the points on that half of the display. Those on the other half tell of another
+/// side: under a zoom they move the opposite way.
+double speed_inwards(const Correspondences& motion, int axis, double sign, double centre) {
+  double speed = 0;
+  for (std::size_t i = 0; i < motion.point.size(); ++i) {
+    if (sign * (motion.then_px[i][axis] - centre) > 0) continue;
+    speed = std::max(speed, sign * (motion.now_px[i][axis] - motion.then_px[i][axis]));
+  }
+  return speed;
+}
+
+/// The display, grown by velocity × expected reuse [LS97 3.2].
+RectD grown_display(const LayerState& now, const LayerState& soon, const Polyhedron& hull,
+                    const ExtentOptions& options) {
+  const dvec2 size(now.view.display_px);
+  RectD grown{{0, 0}, size};
+  const Correspondences motion = correspond(now, soon, hull);
+  if (!motion.overlap) return grown;
+  const double frames = in_range(options.expected_reuse_frames, 0, HUGE_VAL, 0);
+  const double most = in_range(options.max_growth, 0, 1, 0) * std::max(size.x, size.y);
+  const auto growth = [&](int axis, double sign) {
+    const double speed = speed_inwards(motion, axis, sign, size[axis] / 2);
+    return speed > 0 ? std::min(frames * speed, most) : 0;
+  };
+  for (const int axis : {0, 1}) {
+    grown.lo[axis] -= growth(axis, 1);
+    grown.hi[axis] += growth(axis, -1);
+  }
+  return grown;
+}
+
+/// What was cut off at the enlarged view goes on beyond it: such points are moved out by a display's size.
+std::vector<dvec2> continued_beyond_view(std::vector<dvec2> outline, const View& view) {
+  const dvec2 size(view.display_px);
+  const double larger = std::max(size.x, size.y);
+  for (dvec2& p : outline) {
+    for (const int axis : {0, 1}) {
+      const double margin = view.clip_margin * size[axis];
+      if (p[axis] <= -margin + kSliver) p[axis] -= larger;
+      if (p[axis] >= size[axis] + margin - kSliver) p[axis] += larger;
+    }
+  }
+  return outline;
+}
+
+/// One axis of a rectangle, in lattice coordinates.
+struct Interval {
+  double lo, hi;
+};
+
+struct Texels {
+  int lo, hi;
+  bool cut_lo, cut_hi;
+};
+
+/// Gives up growth until no more than `max_px` texels are left, from both sides in proportion to their
+/// growth.
+void give_up_growth(const Texels& ungrown, int max_px, Texels& texels) {
+  const int excess = texels.hi - texels.lo - max_px;
+  if (excess <= 0) return;
+  const double grown_lo = std::max(0, ungrown.lo - texels.lo), grown_hi = std::max(0, texels.hi - ungrown.hi);
+  const int from_lo = static_cast<int>(std::lround(excess * grown_lo / std::max(1.0, grown_lo + grown_hi)));
+  texels.lo += from_lo;
+  texels.hi -= excess - from_lo;
+}
+
+/// Whole texels over `drawn`, padded. A layer that goes on beyond the padding of a flush lattice gets none
+/// there.
+Texels cover(Interval own, Interval drawn, bool flush) {
+  Texels t{static_cast<int>(std::floor(drawn.lo + kSliver)), static_cast<int>(std::ceil(drawn.hi - kSliver)),
+           false, false};
+  t.hi = std::max(t.hi, t.lo + 1);
+  if (!flush || own.lo >= t.lo - kPadding) t.lo -= kPadding;
+  if (!flush || own.hi <= t.hi + kPadding) t.hi += kPadding;
+  return t;
+}
+
+/// One axis of the sprite: `own` are the bounds of the layer, `shown` of what is on the display, `drawn` of
+/// what is in the extents.
+Texels texels_along(Interval own, Interval shown, Interval drawn, bool flush, int max_px) {
+  Texels texels = cover(own, drawn, flush);
+  give_up_growth(cover(own, shown, flush), max_px, texels);
+  texels.cut_lo = own.lo < texels.lo - kSliver;
+  texels.cut_hi = own.hi > texels.hi + kSliver;
+  return texels;
+}
+
+}  // namespace
+
+SpritePlacement place_sprite(const LayerState& now, const LayerState& soon, const Polyhedron& hull,
+                             const ExtentOptions& extents, const PlacementOptions& options) {
+  SpritePlacement placement;
+  if (!now.touches_display) return placement;
+  const auto outline = convex_hull(clipped_screen_points(now, hull));
+  const auto on_display = clip_to_rect(outline, {{0, 0}, dvec2(now.view.display_px)});
+  if (on_display.empty()) return placement;  // its bounds touch the display, itself it passes by a corner
+
+  const double asked = in_range(options.resolution_scale, 1e-3, 4, PlacementOptions{}.resolution_scale);
+  const int max_px = std::max(options.max_sprite_px, 8);
+  Lattice lattice = choose_direction(on_display, options, asked);
+  lattice.density = density_within(lattice.bounds(on_display), asked, max_px);
+
+  const auto drawn_outline = clip_to_rect(outline, grown_display(now, soon, hull, extents));
+  const RectD own = lattice.bounds(now.clipped ? continued_beyond_view(outline, now.view) : outline);
+  const RectD shown = lattice.bounds(on_display), drawn = lattice.bounds(drawn_outline);
+  const auto along = [&](int axis) {
+    return texels_along({own.lo[axis], own.hi[axis]}, {shown.lo[axis], shown.hi[axis]},
+                        {drawn.lo[axis], drawn.hi[axis]}, lattice.is_flush(), max_px);
+  };
+  const Texels x = along(0), y = along(1);
+  placement.screen_from_sprite = lattice.screen_from_sprite(x.lo, y.lo);
+  placement.size_px = {x.hi - x.lo, y.hi - y.lo};
+  placement.clipped = {x.cut_lo, x.cut_hi, y.cut_lo, y.cut_hi};
+  placement.axis_aligned = lattice.axis_aligned();
+  placement.resolution_reduced = lattice.density < asked;
+  return placement;
+}
+
+}  // namespace talisman::layers
