@@ -10,7 +10,8 @@
 namespace talisman::tests {
 namespace {
 
-/// A vector m ≠ 0 with Σ mᵢ columnᵢ = 0, by elimination with complete pivoting; for one column more than the rank.
+/// A vector m ≠ 0 with Σ mᵢ columnᵢ = 0, by elimination with complete pivoting; for one column more than the
+/// rank.
 std::vector<double> null_vector(std::vector<std::vector<double>> columns) {
   const int n = static_cast<int>(columns.size()), rows = static_cast<int>(columns[0].size());
   std::vector<int> order(n);

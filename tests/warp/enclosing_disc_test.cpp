@@ -21,8 +21,8 @@ double farthest(const std::vector<dvec2>& points, dvec2 centre) {
   return most;
 }
 
-/// The slow oracle: the best of all discs over two points and of all circumscribed discs of three, each measured
-/// against all points.
+/// The slow oracle: the best of all discs over two points and of all circumscribed discs of three, each
+/// measured against all points.
 double radius_by_trying_all(const std::vector<dvec2>& points) {
   const int n = static_cast<int>(points.size());
   double best = farthest(points, points[0]);
@@ -34,8 +34,8 @@ double radius_by_trying_all(const std::vector<dvec2>& points) {
         const double d = 2 * (b.x * c.y - b.y * c.x);
         if (d == 0) continue;
         const double bb = glm::dot(b, b), cc = glm::dot(c, c);
-        best = std::min(best, farthest(points, points[i] + dvec2{(c.y * bb - b.y * cc) / d,
-                                                                 (b.x * cc - c.x * bb) / d}));
+        best = std::min(
+            best, farthest(points, points[i] + dvec2{(c.y * bb - b.y * cc) / d, (b.x * cc - c.x * bb) / d}));
       }
     }
   return best;
