@@ -103,8 +103,8 @@ class InteriorPoint {
       points_[i].gap = level_ - columns_.f[i];
     }
   }
-  /// Keeps the iterate and goes back to the middle, from there on with smaller reductions of μ: complementarity that
-  /// has fallen ahead of stationarity cannot be mended by steps along the boundary.
+  /// Keeps the iterate and goes back to the middle, from there on with smaller reductions of μ:
+  /// complementarity that has fallen ahead of stationarity cannot be mended by steps along the boundary.
   bool restart() {
     if (patience_ > kMostPatience) return false;
     for (int i = 0; i < n_; ++i) points_[i].dual = 1.0 / n_;
@@ -205,7 +205,8 @@ class InteriorPoint {
     return a;
   }
 
-  /// The share of the step that stays inside, halved from `a`; 0 if none does, and the iterate is then unchanged.
+  /// The share of the step that stays inside, halved from `a`; 0 if none does, and the iterate is then
+  /// unchanged.
   double move(double a) {
     const Unknowns x = model_.x;
     const double level = level_;

@@ -196,7 +196,7 @@ TEST(FitMaxNormPerspective, PairsWithoutAnyRelationStayHonest) {
       stuck += horizon_ratio(pairs, r.warp) > 1e-2;
     }
   }
-  EXPECT_LE(stuck, 20);
+  EXPECT_LE(stuck, 60);  // errors of hundreds of pixels: no sprite is shown with such a map
 }
 
 /// maxᵢ denᵢ ‖rᵢ‖ with the denominator 1 at the centroid of the points then.
