@@ -63,12 +63,10 @@ class InteriorPoint {
     find_direction(bent);
     double way = (1 - std::clamp(left, kLeastMargin, kMostMargin)) * way_to_boundary();
     if (way < kShortWay) way = recentred_way(mean);
-    short_steps_ = way < kShortWay ? short_steps_ + 1 : 0;
-    if (short_steps_ == kShortSteps) {
-      restart();
-      return true;
-    }
-    return move(std::min(1.0, way));
+    const double moved = move(std::min(1.0, way));
+    short_steps_ = moved < kShortWay ? short_steps_ + 1 : 0;
+    if (moved > 0 && short_steps_ < patience_) return true;
+    return restart();
   }
 
   /// Σ λ c / s: what the present iterate can at best be certified to, relative to s.
@@ -87,7 +85,7 @@ class InteriorPoint {
   static constexpr double kStartLevel = 1.02, kLeastShare = 0.1;
   static constexpr double kShortWay = 0.3, kRecentre = 0.5, kLeastMargin = 1e-3, kMostMargin = 0.02;
   static constexpr double kRestartLevel = 1.5, kCarefulLeft = 0.5;
-  static constexpr int kShortSteps = 2;
+  static constexpr int kShortSteps = 2, kMostPatience = 32;
   using Unknowns = typename Model::Unknowns;
   struct Point {
     double dual, gap, kappa;
@@ -105,13 +103,16 @@ class InteriorPoint {
       points_[i].gap = level_ - columns_.f[i];
     }
   }
-  /// Keeps the iterate and goes back to the middle, from there on with smaller reductions of μ: complementarity that
-  /// has fallen ahead of stationarity cannot be mended by steps along the boundary.
-  void restart() {
+  /// Keeps the iterate and goes back to the middle, from there on with smaller reductions of μ:
+  /// complementarity that has fallen ahead of stationarity cannot be mended by steps along the boundary.
+  bool restart() {
+    if (patience_ > kMostPatience) return false;
     for (int i = 0; i < n_; ++i) points_[i].dual = 1.0 / n_;
     set_level(kRestartLevel);
     short_steps_ = 0;
+    patience_ *= 2;
     least_left_ = kCarefulLeft;
+    return true;
   }
 
   double largest() const { return *std::max_element(columns_.f, columns_.f + n_); }
@@ -204,7 +205,9 @@ class InteriorPoint {
     return a;
   }
 
-  bool move(double a) {
+  /// The share of the step that stays inside, halved from `a`; 0 if none does, and the iterate is then
+  /// unchanged.
+  double move(double a) {
     const Unknowns x = model_.x;
     const double level = level_;
     for (int tries = 0; tries < kMostHalvings; ++tries, a *= 0.5) {
@@ -216,12 +219,12 @@ class InteriorPoint {
         points_[i].gap = level_ - columns_.f[i];
         points_[i].dual += a * points_[i].d_dual;
       }
-      return true;
+      return a;
     }
     model_.x = x;
     level_ = level;
     model_.update();
-    return false;
+    return 0;
   }
 
   Model& model_;
@@ -230,7 +233,7 @@ class InteriorPoint {
   double level_ = 0, d_level_ = 0, sum_kappa_ = 0, sum_dual_ = 0;
   Unknowns mean_{}, stationarity_{}, dx_{};
   double least_left_ = 0;
-  int short_steps_ = 0;
+  int short_steps_ = 0, patience_ = kShortSteps;
   Cholesky<kUnknowns> root_;
   Point* points_;
   Point inline_[kInline];

@@ -109,6 +109,9 @@ void refine(Model& model, Progress<Model>& progress, const Goal& goal, int limit
     certify();
     if (goal.reached(progress.bounds)) return;
   }
+  // Not reached: at least say how far it is.
+  interior.weights_to_columns();
+  certify();
 }
 
 /// One run for one linear model. Leaves the best iterate in `model.x`.
