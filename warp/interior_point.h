@@ -9,8 +9,8 @@
 ///
 /// A step is Newton's on this system with λᵢ cᵢ = μ in place of 0, after Mehrotra: a predictor with μ = 0
 /// tells how small μ may be chosen, and its second-order terms correct the step. Because f is a quadratic
-/// (exactly so in the linear families) the corrector knows them: along s·dx, fᵢ bends by bendᵢ = ‖Jᵢ dx‖² and
-/// Σ λᵢ gᵢ by -Σ dλᵢ JᵢᵀJᵢ dx. That is why some 5 steps suffice where a log-barrier method took 23
+/// (exactly so in the linear families) the corrector knows them: along a·dx, fᵢ bends by a² bendᵢ = a² ‖Jᵢ
+/// dx‖² and Σ λᵢ gᵢ by -Σ dλᵢ JᵢᵀJᵢ dx. That is why some 5 steps suffice where a log-barrier method took 23
 /// (performance of the prototypes: [A §5]).
 ///
 /// The normal matrix is H + 2 Σ κᵢ (gᵢ - m)(gᵢ - m)ᵀ with H = Σ λᵢ JᵢᵀJᵢ, κᵢ = λᵢ/cᵢ and m the κ-mean of g: s
@@ -46,7 +46,7 @@ class InteriorPoint {
     set_level(kStartLevel);
   }
 
-  /// False when rounding leaves no step that stays inside; the iterate is then unchanged.
+  /// False when there is no step that stays inside, even after going back to the middle some times.
   bool step() {
     if (!(level_ > 0) || !linearise()) return false;
     const double mean = complementarity();
@@ -88,7 +88,7 @@ class InteriorPoint {
   static constexpr int kShortSteps = 2, kMostPatience = 32;
   using Unknowns = typename Model::Unknowns;
   struct Point {
-    double dual, gap, kappa;
+    double dual, gap, per_gap, kappa;
     double d_dual, d_gap, bend, target;
     dvec2 along;
     Unknowns g;
@@ -131,7 +131,8 @@ class InteriorPoint {
     for (int i = 0; i < n_; ++i) {
       Point& p = points_[i];
       p.g = model_.gradient(i);
-      p.kappa = p.dual / p.gap;
+      p.per_gap = 1 / p.gap;
+      p.kappa = p.dual * p.per_gap;
       sum_kappa_ += p.kappa;
       sum_dual_ += p.dual;
       add_scaled<kUnknowns>(mean_, p.kappa, p.g);
@@ -154,7 +155,7 @@ class InteriorPoint {
     double sum = sum_dual_ - 1;
     Unknowns b = stationarity_;
     for (int i = 0; i < n_; ++i) {
-      const double e = points_[i].target / points_[i].gap;
+      const double e = points_[i].target * points_[i].per_gap;
       sum += e;
       add_scaled<kUnknowns>(b, e, points_[i].g);
     }
@@ -168,7 +169,7 @@ class InteriorPoint {
       p.along = model_.along(i, dx_);
       p.bend = model_.bend(i, p.along, dx_);
       p.d_gap = d_level_ + 2 * (columns_.rx[i] * p.along.x + columns_.ry[i] * p.along.y);
-      p.d_dual = p.target / p.gap - p.kappa * p.d_gap;
+      p.d_dual = p.target * p.per_gap - p.kappa * p.d_gap;
     }
   }
 
