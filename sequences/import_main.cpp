@@ -3,12 +3,12 @@
 // talisman_import PATH SECONDS MEGABYTES: reads a model with assimp and writes it to stdout as a scene stream. Started by
 // import_model; limits itself first, so that nothing in the file can take more than that.
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
 
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -25,6 +25,7 @@ void limit(int resource, rlim_t soft) {
 }
 
 void limit_ourselves(int seconds, long megabytes) {
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the tool; it ends its reader when it ends itself
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   limit(RLIMIT_CPU, static_cast<rlim_t>(seconds));
   limit(RLIMIT_CORE, 0);
