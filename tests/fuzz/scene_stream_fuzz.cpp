@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes in the place of the importer's stream. Only InputError may come out, and what is accepted survives being evaluated.
+// Any bytes in the place of the importer's stream. Only InputError may come out, and what is accepted
+// survives being evaluated.
 #include <cstddef>
 #include <cstdint>
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text in the place of a sequence file: every value is asked for in every type, and only InputError may come out.
+// Any text in the place of a sequence file: every value is asked for in every type, and only InputError may
+// come out.
 #include <cstddef>
 #include <cstdint>
 #include <string>
