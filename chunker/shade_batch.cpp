@@ -7,6 +7,36 @@
 
 #include "chunker/shade_batch.h"
 
+#ifndef TALISMAN_CHUNKER_SHADE_BLOCK
+#define TALISMAN_CHUNKER_SHADE_BLOCK
+namespace talisman::chunker {
+
+/// Points go through all steps in blocks whose intermediate results stay in the first-level cache.
+inline constexpr int kBlock = 64;  // a multiple of every lane count
+using BlockRow = std::array<float, kBlock>;
+using BlockIndices = std::array<std::int32_t, kBlock>;
+
+/// The four texels of bilinear() at each point, in one level of the pyramid, and the shares of the second of
+/// each pair.
+struct BlockTaps {
+  alignas(64) std::array<BlockIndices, 4> texel;
+  alignas(64) BlockRow x_share, y_share;
+};
+
+struct ShadeBlock {
+  const float* dx = nullptr;
+  const float* dy = nullptr;
+  int count = 0;
+  alignas(64) BlockRow one, two;     ///< λ₁, λ₂
+  alignas(64) BlockIndices level;    ///< the finer one
+  alignas(64) BlockRow level_share;  ///< of the coarser one; 0: it is not needed
+  BlockTaps fine, coarse;
+  alignas(64) std::array<BlockRow, 3> diffuse, specular;  ///< Phong only
+};
+
+}  // namespace talisman::chunker
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace talisman::chunker::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
@@ -77,25 +107,103 @@ HWY_INLINE Vec squared_derivative(const Interpolator& t, int uv, const MipLevel&
   return hn::Add(squares[0], squares[1]);
 }
 
-void Interpolate(const Shader& shader, const Interpolator& t, ShadeBatch& batch) {
+using Ints = hn::RebindToSigned<Floats>;
+using IntVec = hn::Vec<Ints>;
+
+/// floor_to_int() in lanes.
+HWY_INLINE IntVec floor_to_int(Vec x) {
+  const Ints di;
+  const IntVec i = hn::ConvertTo(di, x);
+  const auto above = hn::Lt(x, hn::ConvertTo(Floats(), i));
+  return hn::Add(i, hn::IfThenElseZero(hn::RebindMask(di, above), hn::Set(di, -1)));
+}
+
+struct Taps {
+  IntVec first, second;
+  Vec share;
+};
+
+/// tap() in lanes.
+HWY_INLINE Taps taps(Vec coordinate, IntVec size) {
+  const Floats d;
+  const Ints di;
+  const Vec repeated = hn::Sub(coordinate, hn::ConvertTo(d, floor_to_int(coordinate)));
+  const Vec x = hn::Sub(hn::Mul(repeated, hn::ConvertTo(d, size)), set(0.5f));
+  const IntVec below = floor_to_int(x), above = hn::Add(below, hn::Set(di, 1));
+  const IntVec first = hn::IfThenElse(hn::Lt(below, hn::Zero(di)), hn::Add(below, size), below);
+  const IntVec second = hn::IfThenElse(hn::Lt(above, size), above, hn::Sub(above, size));
+  return {first, second, hn::Sub(x, hn::ConvertTo(d, below))};
+}
+
+HWY_INLINE void store_taps(Vec u, Vec v, IntVec width, IntVec height, BlockTaps& out, int i) {
+  const Floats d;
+  const Ints di;
+  const Taps x = taps(u, width), y = taps(v, height);
+  const IntVec upper = hn::Mul(y.first, width), lower = hn::Mul(y.second, width);
+  hn::Store(hn::Add(upper, x.first), di, &out.texel[0][i]);
+  hn::Store(hn::Add(upper, x.second), di, &out.texel[1][i]);
+  hn::Store(hn::Add(lower, x.first), di, &out.texel[2][i]);
+  hn::Store(hn::Add(lower, x.second), di, &out.texel[3][i]);
+  hn::Store(x.share, d, &out.x_share[i]);
+  hn::Store(y.share, d, &out.y_share[i]);
+}
+
+/// coarse_log2() in lanes.
+HWY_INLINE Vec log2_of(Vec x) {
+  const Floats d;
+  const Ints di;
+  const IntVec bits = hn::BitCast(di, x);
+  const IntVec mantissa = hn::Or(hn::And(bits, hn::Set(di, 0x007fffff)), hn::Set(di, 0x3f800000));
+  const Vec m = hn::Sub(hn::BitCast(d, mantissa), set(1));
+  const Vec e = hn::ConvertTo(d, hn::Sub(hn::ShiftRight<23>(bits), hn::Set(di, 127)));
+  return hn::Add(hn::Add(e, m), hn::Mul(hn::Mul(set(0.3465f), m), hn::Sub(set(1), m)));
+}
+
+/// The taps of trilinear(): magnified points need one level, and where all are, no table is looked at.
+HWY_INLINE void choose_taps(const Pyramid& pyramid, Vec u, Vec v, Vec footprint, ShadeBlock& block, int i) {
+  const Floats d;
+  const Ints di;
+  const auto minified = hn::Gt(footprint, set(1));
+  if (hn::AllFalse(d, minified)) {
+    hn::Store(hn::Zero(di), di, &block.level[i]);
+    hn::Store(set(0), d, &block.level_share[i]);
+    const MipLevel& finest = pyramid.levels[0];
+    store_taps(u, v, hn::Set(di, finest.width), hn::Set(di, finest.height), block.fine, i);
+    return;
+  }
+  const Vec last = set(static_cast<float>(pyramid.levels.size() - 1));
+  const Vec half_log = hn::Mul(set(0.5f), log2_of(footprint));
+  const Vec lambda = hn::IfThenElseZero(minified, hn::IfThenElse(hn::Lt(last, half_log), last, half_log));
+  const IntVec level = hn::ConvertTo(di, lambda);
+  const IntVec next = hn::Min(hn::Add(level, hn::Set(di, 1)), hn::ConvertTo(di, last));
+  hn::Store(level, di, &block.level[i]);
+  hn::Store(hn::Sub(lambda, hn::ConvertTo(d, level)), d, &block.level_share[i]);
+  const std::int32_t *widths = pyramid.widths.data(), *heights = pyramid.heights.data();
+  store_taps(u, v, hn::GatherIndex(di, widths, level), hn::GatherIndex(di, heights, level), block.fine, i);
+  store_taps(u, v, hn::GatherIndex(di, widths, next), hn::GatherIndex(di, heights, next), block.coarse, i);
+}
+
+void Interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   const Floats d;
   const int uv = shader.layout.uv;
-  for (int i = 0; i < batch.count; i += static_cast<int>(hn::Lanes(d))) {
-    const Vec dx = hn::Load(d, &batch.dx[i]), dy = hn::Load(d, &batch.dy[i]);
+  for (int i = 0; i < block.count; i += static_cast<int>(hn::Lanes(d))) {
+    const Vec dx = hn::LoadU(d, block.dx + i), dy = hn::LoadU(d, block.dy + i);
     const Vec s = hn::Add(hn::Add(set(t.s0), hn::Mul(set(t.sx), dx)), hn::Mul(set(t.sy), dy));
     const Vec r = hn::Div(set(1), s);
     const Vec one = clamped(hn::Mul(plane(t.q1x, dx, t.q1y, dy), r));
     const Vec two = clamped(hn::Mul(plane(t.q2x, dx, t.q2y, dy), r));
-    hn::Store(one, d, &batch.one[i]);
-    hn::Store(two, d, &batch.two[i]);
+    hn::Store(one, d, &block.one[i]);
+    hn::Store(two, d, &block.two[i]);
     if (uv < 0) continue;
-    hn::Store(channel(t, uv, 0, one, two), d, &batch.u[i]);
-    hn::Store(channel(t, uv, 1, one, two), d, &batch.v[i]);
-    if (!shader.mipmaps) continue;
-    const MipLevel& finest = shader.pyramid->levels[0];
-    const Vec x = squared_derivative(t, uv, finest, one, two, r, t.q1x, t.q2x, t.sx);
-    const Vec y = squared_derivative(t, uv, finest, one, two, r, t.q1y, t.q2y, t.sy);
-    hn::Store(hn::IfThenElse(hn::Lt(x, y), y, x), d, &batch.footprint[i]);
+    Vec footprint = set(0);
+    if (shader.mipmaps) {
+      const MipLevel& finest = shader.pyramid->levels[0];
+      const Vec x = squared_derivative(t, uv, finest, one, two, r, t.q1x, t.q2x, t.sx);
+      const Vec y = squared_derivative(t, uv, finest, one, two, r, t.q1y, t.q2y, t.sy);
+      footprint = hn::IfThenElse(hn::Lt(x, y), y, x);
+    }
+    choose_taps(*shader.pyramid, channel(t, uv, 0, one, two), channel(t, uv, 1, one, two), footprint, block,
+                i);
   }
 }
 
@@ -129,17 +237,17 @@ HWY_INLINE void add_light(const Shader& shader, const Vec3& normal, const Vec3& 
                   hn::IfThenElse(lit_side, specular.z, lit.specular.z)};
 }
 
-HWY_INLINE void store3(const Vec3& v, std::array<ShadeBatch::Row, 3>& rows, int i) {
+HWY_INLINE void store3(const Vec3& v, std::array<BlockRow, 3>& rows, int i) {
   hn::Store(v.x, Floats(), &rows[0][i]);
   hn::Store(v.y, Floats(), &rows[1][i]);
   hn::Store(v.z, Floats(), &rows[2][i]);
 }
 
 /// light() at every point.
-void LightPoints(const Shader& shader, const Interpolator& t, ShadeBatch& batch) {
+void LightPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   const Floats d;
-  for (int i = 0; i < batch.count; i += static_cast<int>(hn::Lanes(d))) {
-    const Vec one = hn::Load(d, &batch.one[i]), two = hn::Load(d, &batch.two[i]);
+  for (int i = 0; i < block.count; i += static_cast<int>(hn::Lanes(d))) {
+    const Vec one = hn::Load(d, &block.one[i]), two = hn::Load(d, &block.two[i]);
     const Vec3 normal = unit(attribute3(t, shader.layout.normal, one, two));
     const Vec3 nowhere{set(0), set(0), set(0)};
     const Vec3 position =
@@ -152,8 +260,8 @@ void LightPoints(const Shader& shader, const Interpolator& t, ShadeBatch& batch)
       add_light(shader, normal, to_eye, set3(source.to_light), source.color, lit);
     for (const auto& source : shader.lights->point)
       add_light(shader, normal, to_eye, unit(minus(set3(source.position), position)), source.color, lit);
-    store3(lit.diffuse, batch.diffuse, i);
-    if (shader.has_specular) store3(lit.specular, batch.specular, i);
+    store3(lit.diffuse, block.diffuse, i);
+    if (shader.has_specular) store3(lit.specular, block.specular, i);
   }
 }
 
@@ -167,44 +275,63 @@ namespace {
 HWY_EXPORT(Interpolate);
 HWY_EXPORT(LightPoints);
 
+Float4 fetch(const MipLevel& level, const BlockTaps& taps, int i) {
+  const Float4* texels = level.texels.data();
+  const Float4 upper = mix(texels[taps.texel[0][i]], texels[taps.texel[1][i]], taps.x_share[i]);
+  const Float4 lower = mix(texels[taps.texel[2][i]], texels[taps.texel[3][i]], taps.x_share[i]);
+  return mix(upper, lower, taps.y_share[i]);
+}
+
 template <bool kTextured>
-Float4 texel_of(const Shader& shader, const ShadeBatch& batch, int i) {
+Float4 texel_of(const Shader& shader, const ShadeBlock& block, int i) {
   if constexpr (!kTextured) return shader.texel;
-  if (!shader.mipmaps) return bilinear(shader.pyramid->levels[0], batch.u[i], batch.v[i]);
-  return trilinear(*shader.pyramid, batch.u[i], batch.v[i], batch.footprint[i]);
+  const MipLevel* level = &shader.pyramid->levels[block.level[i]];
+  const Float4 fine = fetch(level[0], block.fine, i);
+  const float share = block.level_share[i];
+  return share > 0 ? mix(fine, fetch(level[1], block.coarse, i), share) : fine;
 }
 
 template <bool kPerPixel>
-Lighting lighting_of(const Shader& shader, const Interpolator& t, const ShadeBatch& batch, int i) {
+Lighting lighting_of(const Shader& shader, const Interpolator& t, const ShadeBlock& block, int i) {
   const AttributeLayout& layout = shader.layout;
-  const Lambda at{batch.one[i], batch.two[i], 0};
+  const Lambda at{block.one[i], block.two[i], 0};
   const Float4 color = layout.color >= 0 ? attribute(t, at, layout.color) : shader.base;
   if constexpr (kPerPixel) {
-    const Float4 diffuse{batch.diffuse[0][i], batch.diffuse[1][i], batch.diffuse[2][i], 0};
-    const Float4 specular{batch.specular[0][i], batch.specular[1][i], batch.specular[2][i], 0};
-    return {color * diffuse, shader.has_specular ? specular : splat(0)};
+    const Float4 diffuse{block.diffuse[0][i], block.diffuse[1][i], block.diffuse[2][i], 0};
+    if (!shader.has_specular) return {color * diffuse, splat(0)};
+    return {color * diffuse, Float4{block.specular[0][i], block.specular[1][i], block.specular[2][i], 0}};
   } else {
     return {color, layout.specular >= 0 ? attribute(t, at, layout.specular) : splat(0)};
   }
 }
 
 template <bool kTextured, bool kPerPixel>
-void combine(const Shader& shader, const Interpolator& t, ShadeBatch& batch) {
-  for (int i = 0; i < batch.count; ++i)
-    batch.color[i] =
-        combined(shader, texel_of<kTextured>(shader, batch, i), lighting_of<kPerPixel>(shader, t, batch, i));
+void combine(const Shader& shader, const Interpolator& t, const ShadeBlock& block, Float4* color) {
+  for (int i = 0; i < block.count; ++i)
+    color[i] =
+        combined(shader, texel_of<kTextured>(shader, block, i), lighting_of<kPerPixel>(shader, t, block, i));
+}
+
+void shade_block(const Shader& shader, const Interpolator& t, ShadeBlock& block, Float4* color) {
+  HWY_DYNAMIC_DISPATCH(Interpolate)(shader, t, block);
+  const bool textured = shader.pyramid != nullptr;
+  if (shader.per_pixel) {
+    HWY_DYNAMIC_DISPATCH(LightPoints)(shader, t, block);
+    textured ? combine<true, true>(shader, t, block, color) : combine<false, true>(shader, t, block, color);
+  } else {
+    textured ? combine<true, false>(shader, t, block, color) : combine<false, false>(shader, t, block, color);
+  }
 }
 
 }  // namespace
 
 void shade_batch(const Shader& shader, const Interpolator& t, ShadeBatch& batch) {
-  HWY_DYNAMIC_DISPATCH(Interpolate)(shader, t, batch);
-  const bool textured = shader.pyramid != nullptr;
-  if (shader.per_pixel) {
-    HWY_DYNAMIC_DISPATCH(LightPoints)(shader, t, batch);
-    textured ? combine<true, true>(shader, t, batch) : combine<false, true>(shader, t, batch);
-  } else {
-    textured ? combine<true, false>(shader, t, batch) : combine<false, false>(shader, t, batch);
+  ShadeBlock block;
+  for (int first = 0; first < batch.count; first += kBlock) {
+    block.dx = &batch.dx[first];
+    block.dy = &batch.dy[first];
+    block.count = std::min(kBlock, batch.count - first);
+    shade_block(shader, t, block, &batch.color[first]);
   }
 }
 

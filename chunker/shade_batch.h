@@ -13,17 +13,13 @@
 
 namespace talisman::chunker {
 
-/// Room for the texels of a chunk; `capacity` is more, because lanes beyond the last point are computed and
-/// ignored.
+/// Points in and colours out, for up to all texels of a chunk.
 struct ShadeBatch {
   static constexpr int kPoints = kChunkSize * kChunkSize;
   using Row = std::array<float, kPoints>;
   int count = 0;
-  alignas(64) Row dx{}, dy{};                            ///< in: texels from the triangle's first corner
-  alignas(16) std::array<Float4, kPoints> color{};       ///< out: premultiplied
-  alignas(64) Row one{}, two{};                          ///< λ₁, λ₂
-  alignas(64) Row u{}, v{}, footprint{};                 ///< textured only
-  alignas(64) std::array<Row, 3> diffuse{}, specular{};  ///< Phong only
+  alignas(64) Row dx{}, dy{};                       ///< in: texels from the triangle's first corner
+  alignas(16) std::array<Float4, kPoints> color{};  ///< out: premultiplied
 };
 
 /// Fills `color` of the first `count` points.

@@ -94,6 +94,10 @@ Pyramid build_pyramid(const layers::Texture& texture) {
     pyramid.levels.push_back(half_of(pyramid.levels.back()));
     snap_opaque(pyramid.levels.back());
   }
+  for (const MipLevel& level : pyramid.levels) {
+    pyramid.widths.push_back(level.width);
+    pyramid.heights.push_back(level.height);
+  }
   return pyramid;
 }
 

@@ -29,8 +29,9 @@ struct MipLevel {
 };
 
 struct Pyramid {
-  std::vector<MipLevel> levels;  ///< empty: no texture
-  bool opaque = true;            ///< alpha is 1 in every texel of every level
+  std::vector<MipLevel> levels;               ///< empty: no texture
+  std::vector<std::int32_t> widths, heights;  ///< of the levels, for look-ups in lanes
+  bool opaque = true;                         ///< alpha is 1 in every texel of every level
   bool empty() const { return levels.empty(); }
   std::int64_t bytes() const;
   /// The mean of the whole texture: what a surface without texture coordinates gets.

@@ -180,7 +180,7 @@ class Runner {
   void finish(double fps) {
     decisions_->finish();
     frames_->finish();
-    if (options_.video) write_video(options_.out, fps, options_.format, options_.first_frame);
+    if (options_.video) write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
     write_text_atomically(options_.out + "/summary.json", json_of(summary_));
   }
 

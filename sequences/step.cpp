@@ -99,7 +99,7 @@ LayerAssessment assess_layer(const Pipeline& pipeline, int frame, const LayerMem
   assessment.identical = now.same_pixels(*memory.then);
   const layers::Correspondences matched =
       layers::correspond(*memory.then, now, pipeline.bounds[layer.id].hull);
-  assessment.matched_points = static_cast<int>(matched.then_px.size());
+  assessment.matched_points = matched.overlap ? static_cast<int>(matched.then_px.size()) : 0;
   if (assessment.identical)
     assessment.fitted.status = warp::FitStatus::Converged;  // the identity, without error
   else

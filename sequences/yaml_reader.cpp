@@ -150,6 +150,20 @@ int YamlValue::choice(const std::vector<std::string>& names) const {
 YamlMap::YamlMap(std::map<std::string, YamlValue> values, YamlValue self)
     : values_(std::move(values)), self_(std::move(self)) {}
 
+namespace {
+
+/// Equal but for one letter that was changed, left out or added.
+bool is_one_edit_away(const std::string& a, const std::string& b) {
+  const std::string &shorter = a.size() < b.size() ? a : b, &longer = a.size() < b.size() ? b : a;
+  if (longer.size() - shorter.size() > 1) return false;
+  std::size_t same = 0;
+  while (same < shorter.size() && shorter[same] == longer[same]) ++same;
+  const std::size_t skip = longer.size() == shorter.size() ? 1 : 0;
+  return shorter.compare(std::min(same + skip, shorter.size()), std::string::npos, longer, same + 1, std::string::npos) == 0;
+}
+
+}  // namespace
+
 const YamlValue* YamlMap::find(const std::string& key) {
   known_.insert(key);
   const auto found = values_.find(key);
@@ -157,9 +171,12 @@ const YamlValue* YamlMap::find(const std::string& key) {
 }
 
 const YamlValue& YamlMap::need(const std::string& key) {
-  const YamlValue* value = find(key);
-  if (!value) self_.fail("has the key '" + key + "'");
-  return *value;
+  if (const YamlValue* value = find(key)) return *value;
+  // A misspelt key is both missing and unknown; the line to show is the one where it was written.
+  for (const auto& [written, value] : values_)
+    if (!known_.count(written) && is_one_edit_away(written, key))
+      value.fail("key '" + written + "' is not known here; did you mean '" + key + "'");
+  self_.fail("has the key '" + key + "'");
 }
 
 void YamlMap::read(const std::string& key, double& into, const Range& range) {

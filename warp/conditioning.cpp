@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "layers/check.h"
 
@@ -14,7 +15,8 @@ bool is_good(double coordinate) { return std::fabs(coordinate) <= kLargestCoordi
 /// Unit eigenvector of the larger eigenvalue of | xx xy ; xy yy |, by the half-angle formula that does not
 /// cancel.
 dvec2 principal_axis(double xx, double xy, double yy) {
-  const double difference = xx - yy, twice = 2 * xy, length = std::hypot(difference, twice);
+  const double difference = xx - yy, twice = 2 * xy,
+               length = std::sqrt(difference * difference + twice * twice);
   if (!(length > 0)) return {1, 0};
   if (difference >= 0) {
     const double cosine = std::sqrt((1 + difference / length) / 2);
@@ -44,12 +46,14 @@ double both_resolved(double smaller, double larger, const Spread& spread) {
                    step_between(share(smaller, larger), kCollinearRatio, kSpanningRatio));
 }
 
-/// Neither mirrored nor flat. Written so that NaN and overflow fail.
+/// Neither mirrored nor flat. Written so that NaN fails; where squares leave the range of a double the
+/// entries are scaled.
 bool keeps_area(double a, double b, double c, double d) {
+  const double det = a * d - b * c, squares = a * a + b * b + c * c + d * d;
+  if (squares > 1e-200 && squares < 1e200) return det > kFlattest * squares;
   const double largest = std::max({std::fabs(a), std::fabs(b), std::fabs(c), std::fabs(d)});
   if (!(largest > 0) || !std::isfinite(largest)) return false;
-  a /= largest, b /= largest, c /= largest, d /= largest;
-  return a * d - b * c > kFlattest * (a * a + b * b + c * c + d * d);
+  return keeps_area(a / largest, b / largest, c / largest, d / largest);
 }
 
 dvec2 centroid_of(std::span<const dvec2> points) {
@@ -65,8 +69,8 @@ dvec2 centroid_of(std::span<const dvec2> points) {
 bool is_precise(const Warp& warp, dvec2 p, double w, dvec2 image) {
   const dmat3& m = warp.now_from_then;
   const double terms = std::fabs(m[0].z * p.x) + std::fabs(m[1].z * p.y) + std::fabs(m[2].z);
-  const double coordinate = std::fmax(std::fabs(image.x), std::fabs(image.y)), epsilon = 0x1p-52;
-  return epsilon * terms / w * coordinate <= std::fmax(kLargestRoundingPx, kSpreadRatio * coordinate);
+  const double coordinate = std::max(std::fabs(image.x), std::fabs(image.y)), epsilon = 0x1p-52;
+  return epsilon * terms * coordinate <= w * std::max(kLargestRoundingPx, kSpreadRatio * coordinate);
 }
 
 bool acceptable_perspective(const Warp& warp, std::span<const dvec2> then_px) {
@@ -74,8 +78,8 @@ bool acceptable_perspective(const Warp& warp, std::span<const dvec2> then_px) {
   for (const dvec2& p : then_px) {
     const double w = warp.denominator(p);
     if (!(w > 0) || !std::isfinite(w) || !is_precise(warp, p, w, warp(p))) return false;
-    least = std::fmin(least, w);
-    most = std::fmax(most, w);
+    least = std::min(least, w);
+    most = std::max(most, w);
   }
   if (!(least >= kSmallestDenominatorRatio * most)) return false;
   // The Jacobian at the centroid; its determinant has the same sign wherever the denominator is positive.
@@ -104,31 +108,37 @@ int points_needed(Family family) {
 }
 
 int first_bad_point(std::span<const dvec2> points) {
+  bool good = true;  // without branches: nearly always all are good
+  for (const dvec2& p : points) good &= is_good(p.x) & is_good(p.y);
+  if (good) return -1;
   const auto bad = [](const dvec2& p) { return !is_good(p.x) || !is_good(p.y); };
   const auto found = std::find_if(points.begin(), points.end(), bad);
-  return found == points.end() ? -1 : static_cast<int>(found - points.begin());
+  return static_cast<int>(found - points.begin());
 }
 
 Spread spread_of(std::span<const dvec2> points) {
   Spread s;
   if (points.empty()) return s;
   s.centroid = centroid_of(points);
-  double unit = 0;  // largest deviation: squares of scaled deviations neither overflow nor vanish
+  double unit = 0;  // largest deviation
   for (const dvec2& p : points) {
     s.largest_coordinate = std::max({s.largest_coordinate, std::fabs(p.x), std::fabs(p.y)});
     unit = std::max({unit, std::fabs(p.x - s.centroid.x), std::fabs(p.y - s.centroid.y)});
   }
-  if (!(unit > 0)) return s;
+  if (!(unit >= std::numeric_limits<double>::min())) return s;
+  // Squares of deviations in this unit neither overflow nor vanish; a power of two changes no digit.
+  const double per_unit = std::ldexp(1.0, -std::ilogb(unit));
+  unit = 1 / per_unit;
   double xx = 0, xy = 0, yy = 0;
   for (const dvec2& p : points) {
-    const dvec2 d = (p - s.centroid) / unit;
+    const dvec2 d = (p - s.centroid) * per_unit;
     xx += d.x * d.x, xy += d.x * d.y, yy += d.y * d.y;
   }
   s.axis = principal_axis(xx, xy, yy);
   // Once more along the axes: the small singular value would drown in the rounding of the large moments.
   double uu = 0, uv = 0, vv = 0;
   for (const dvec2& p : points) {
-    const dvec2 d = (p - s.centroid) / unit;
+    const dvec2 d = (p - s.centroid) * per_unit;
     const double u = d.x * s.axis.x + d.y * s.axis.y, v = d.y * s.axis.x - d.x * s.axis.y;
     uu += u * u, uv += u * v, vv += v * v;
   }
@@ -158,9 +168,9 @@ double strength(Family family, const Spread& spread) {
 
 bool acceptable(const Warp& warp, std::span<const dvec2> then_px) {
   const dmat3& m = warp.now_from_then;
-  for (int column = 0; column < 3; ++column)
-    for (int row = 0; row < 3; ++row)
-      if (!std::isfinite(m[column][row])) return false;
+  double zero = 0;  // stays so only if all entries are finite
+  for (int column = 0; column < 3; ++column) zero += m[column].x * 0 + m[column].y * 0 + m[column].z * 0;
+  if (zero != 0) return false;
   if (!warp.is_affine()) return acceptable_perspective(warp, then_px);
   return keeps_area(m[0].x, m[1].x, m[0].y, m[1].y);
 }

@@ -35,8 +35,8 @@ Candidate disc_of(dvec2 a, dvec2 b) {
   return {a + half, glm::length(half), 2, {a, b}, {0.5, 0.5}};
 }
 
-/// The circumscribed disc. Shares are barycentric; a negative one means an obtuse triangle, which two points
-/// decide.
+/// The circumscribed disc; none for a triangle without area. Shares are barycentric: one is negative if the
+/// angle there is obtuse, and two points then have a smaller disc.
 Candidate disc_of(dvec2 a, dvec2 b, dvec2 c) {
   const dvec2 u = b - a, v = c - a;
   const double uu = glm::dot(u, u), vv = glm::dot(v, v), uv = glm::dot(u, v), area = cross(u, v);
@@ -47,18 +47,16 @@ Candidate disc_of(dvec2 a, dvec2 b, dvec2 c) {
   return {a + from_a, glm::length(from_a), 3, {a, b, c}, {1 - beta - gamma, beta, gamma}};
 }
 
-bool decided_by_all(const Candidate& c) {
-  return c.count > 0 && *std::min_element(c.share.begin(), c.share.begin() + c.count) >= 0;
-}
-
-/// The smallest disc of the active points and p, which is outside theirs and so decides with them.
+/// The smallest disc of the active points and p, which is outside theirs and so decides with them. Each
+/// candidate is judged by how far it must grow to contain all of them, and none is refused: whether a
+/// triangle is obtuse or a point inside is a matter of rounding where triangles are thin or have a right
+/// angle.
 Candidate smallest_with(const Candidate& active, dvec2 p) {
   Candidate best;
-  const auto consider = [&](const Candidate& c) {
-    if (!decided_by_all(c) || (best.count > 0 && best.radius <= c.radius)) return;
+  const auto consider = [&](Candidate c) {
     for (int k = 0; k < active.count; ++k)
-      if (!c.contains(active.point[k])) return;
-    best = c;
+      c.radius = std::max(c.radius, glm::length(active.point[k] - c.centre));
+    if (c.count > 0 && (best.count == 0 || c.radius < best.radius)) best = c;
   };
   for (int k = 0; k < active.count; ++k) consider(disc_of(p, active.point[k]));
   for (int k = 0; k < active.count; ++k)
@@ -82,7 +80,7 @@ dvec2 farthest_from(dvec2 centre, std::span<const dvec2> points) {
 
 /// Σ λ r² / Σ λ r less what rounding may have added; see min_max.h, with H the unit matrix.
 double lower_bound(const Candidate& active, double upper) {
-  double squares = 0, norms = 0, sum = 0;
+  double squares = 0, norms = 0;
   dvec2 drift{0, 0};
   for (int k = 0; k < active.count; ++k) {
     const double share = std::max(0.0, active.share[k]);
@@ -90,7 +88,6 @@ double lower_bound(const Candidate& active, double upper) {
     squares += share * glm::dot(r, r);
     norms += share * glm::length(r);
     drift += share * r;
-    sum += share;
   }
   if (!(norms > 0)) return 0;
   return std::max(0.0, (squares - 4 * upper * glm::length(drift)) / norms * (1 - kSame));

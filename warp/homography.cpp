@@ -25,7 +25,7 @@ struct Pair {
 };
 
 struct Row {
-  double w = 1;
+  double w = 1, per_w = 1;
   std::array<double, 3> basis{};  ///< orthonormal over the points, spans 1/w, u/w, v/w
   dvec2 residual{0, 0};           ///< p minus the best A q / w
 };
@@ -92,8 +92,9 @@ class Separable {
     }
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
       Columns c = columns(state, i, homogeneous);
-      for (int k = 0; k < 3; ++k)
-        c.g -= on_g[k] * state.rows[i].basis[k], c.h -= on_h[k] * state.rows[i].basis[k];
+      const auto& basis = state.rows[i].basis;
+      c.g -= on_g[0] * basis[0] + on_g[1] * basis[1] + on_g[2] * basis[2];
+      c.h -= on_h[0] * basis[0] + on_h[1] * basis[1] + on_h[2] * basis[2];
       const dvec2 r = state.rows[i].residual;
       n.gg += c.g.x * c.g.x + c.g.y * c.g.y;
       n.gh += c.g.x * c.h.x + c.g.y * c.h.y;
@@ -124,40 +125,39 @@ class Separable {
   };
   Columns columns(const State& state, std::size_t i, bool homogeneous) const {
     const Row& row = state.rows[i];
-    const dvec2 image = homogeneous ? pairs_[i].p : (pairs_[i].p - row.residual) / row.w;
+    const dvec2 image = homogeneous ? pairs_[i].p : (pairs_[i].p - row.residual) * row.per_w;
     return {image * pairs_[i].q.x, image * pairs_[i].q.y};
   }
 
   /// Modified Gram-Schmidt of the columns 1/w, u/w, v/w, which whitening has made nearly orthogonal already.
+  /// Each pass takes out one column and sums what the next needs.
   void orthonormalise(State& state) const {
-    for (std::size_t i = 0; i < pairs_.size(); ++i) {
-      const double per_w = 1 / state.rows[i].w;
-      state.rows[i].basis = {per_w, pairs_[i].q.x * per_w, pairs_[i].q.y * per_w};
-    }
+    auto& rows = state.rows;
     auto& r = state.r;
-    r[0] = normalise<0>(state.rows);
-    r[1] = take_out<1, 0>(state.rows);
-    r[2] = take_out<2, 0>(state.rows);
-    r[3] = normalise<1>(state.rows);
-    r[4] = take_out<2, 1>(state.rows);
-    r[5] = normalise<2>(state.rows);
-  }
-
-  template <int K>
-  static double normalise(std::vector<Row>& rows) {
-    double squared = 0;
-    for (const Row& row : rows) squared += row.basis[K] * row.basis[K];
-    const double length = std::sqrt(squared), per_length = 1 / length;
-    for (Row& row : rows) row.basis[K] *= per_length;
-    return length;
-  }
-
-  template <int K, int From>
-  static double take_out(std::vector<Row>& rows) {
-    double product = 0;
-    for (const Row& row : rows) product += row.basis[K] * row.basis[From];
-    for (Row& row : rows) row.basis[K] -= product * row.basis[From];
-    return product;
+    double s00 = 0, s01 = 0, s02 = 0, s11 = 0, s12 = 0, s22 = 0;
+    for (std::size_t i = 0; i < pairs_.size(); ++i) {
+      const double per_w = 1 / rows[i].w;
+      auto& b = rows[i].basis;
+      b = {per_w, pairs_[i].q.x * per_w, pairs_[i].q.y * per_w};
+      rows[i].per_w = per_w;
+      s00 += b[0] * b[0], s01 += b[0] * b[1], s02 += b[0] * b[2];
+    }
+    r[0] = std::sqrt(s00), r[1] = s01 / r[0], r[2] = s02 / r[0];
+    for (Row& row : rows) {
+      auto& b = row.basis;
+      b[0] /= r[0];
+      b[1] -= r[1] * b[0], b[2] -= r[2] * b[0];
+      s11 += b[1] * b[1], s12 += b[1] * b[2];
+    }
+    r[3] = std::sqrt(s11), r[4] = s12 / r[3];
+    for (Row& row : rows) {
+      auto& b = row.basis;
+      b[1] /= r[3];
+      b[2] -= r[4] * b[1];
+      s22 += b[2] * b[2];
+    }
+    r[5] = std::sqrt(s22);
+    for (Row& row : rows) row.basis[2] /= r[5];
   }
 
   void project(State& state) const {

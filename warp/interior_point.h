@@ -7,14 +7,14 @@
 ///
 ///   Σ λᵢ gᵢ = 0,  gᵢ = Jᵢᵀrᵢ        Σ λᵢ = 1        λᵢ cᵢ = 0
 ///
-/// A step is Newton's on this system with λᵢ cᵢ = μ in place of 0, after Mehrotra: a predictor with μ = 0 tells
-/// how small μ may be chosen, and its second-order terms correct the step. Because f is a quadratic (exactly so in the
-/// linear families) the corrector knows them: along s·dx, fᵢ bends by bendᵢ = ‖Jᵢ dx‖² and Σ λᵢ gᵢ by
-/// -Σ dλᵢ JᵢᵀJᵢ dx. That is why some 5 steps suffice where a log-barrier method took 23 (performance of the
-/// prototypes: [A §5]).
+/// A step is Newton's on this system with λᵢ cᵢ = μ in place of 0, after Mehrotra: a predictor with μ = 0
+/// tells how small μ may be chosen, and its second-order terms correct the step. Because f is a quadratic
+/// (exactly so in the linear families) the corrector knows them: along a·dx, fᵢ bends by a² bendᵢ = a² ‖Jᵢ
+/// dx‖² and Σ λᵢ gᵢ by -Σ dλᵢ JᵢᵀJᵢ dx. That is why some 5 steps suffice where a log-barrier method took 23
+/// (performance of the prototypes: [A §5]).
 ///
-/// The normal matrix is H + 2 Σ κᵢ (gᵢ - m)(gᵢ - m)ᵀ with H = Σ λᵢ JᵢᵀJᵢ, κᵢ = λᵢ/cᵢ and m the κ-mean of g: s is
-/// eliminated by centring, which subtracts nothing that is nearly equal.
+/// The normal matrix is H + 2 Σ κᵢ (gᵢ - m)(gᵢ - m)ᵀ with H = Σ λᵢ JᵢᵀJᵢ, κᵢ = λᵢ/cᵢ and m the κ-mean of g: s
+/// is eliminated by centring, which subtracts nothing that is nearly equal.
 ///
 /// For the post-divide residual, which is not linear, H is the Gauss-Newton part of the Hessian. The rest,
 /// -Σ λᵢ/denᵢ (gᵢ ∇denᵢᵀ + ∇denᵢ gᵢᵀ), vanishes on the directions in which no active fᵢ changes, so that
@@ -42,23 +42,19 @@ class InteriorPoint {
 
   /// From the residuals and weights of the columns.
   void start() {
-    level_ = kStartLevel * largest();
-    double sum = 0;
-    for (int i = 0; i < n_; ++i) sum += points_[i].dual = std::max(columns_.w[i], kLeastShare / n_);
-    for (int i = 0; i < n_; ++i) {
-      points_[i].dual /= sum;
-      points_[i].gap = level_ - columns_.f[i];
-    }
+    for (int i = 0; i < n_; ++i) points_[i].dual = std::max(columns_.w[i], kLeastShare / n_);
+    set_level(kStartLevel);
   }
 
-  /// False when rounding leaves no step that stays inside; the iterate is then unchanged.
+  /// False when there is no step that stays inside, even after going back to the middle some times.
   bool step() {
     if (!(level_ > 0) || !linearise()) return false;
     const double mean = complementarity();
     for (int i = 0; i < n_; ++i) points_[i].target = -points_[i].dual * points_[i].gap;
     Unknowns bent{};
     find_direction(bent);
-    const double left = share_left_by_predictor(mean), centring = left * left * left;
+    const double left = std::max(share_left_by_predictor(mean), least_left_);
+    const double centring = left * left * left;
     for (int i = 0; i < n_; ++i) {
       Point& p = points_[i];
       add_scaled<kUnknowns>(bent, p.d_dual, model_.transposed(i, p.along));
@@ -67,7 +63,10 @@ class InteriorPoint {
     find_direction(bent);
     double way = (1 - std::clamp(left, kLeastMargin, kMostMargin)) * way_to_boundary();
     if (way < kShortWay) way = recentred_way(mean);
-    return move(std::min(1.0, way));
+    const double moved = move(std::min(1.0, way));
+    short_steps_ = moved < kShortWay ? short_steps_ + 1 : 0;
+    if (moved > 0 && short_steps_ < patience_) return true;
+    return restart();
   }
 
   /// Σ λ c / s: what the present iterate can at best be certified to, relative to s.
@@ -85,13 +84,36 @@ class InteriorPoint {
   // steps hardly depends on either (1.02 … 1.3, 0.01 … 1).
   static constexpr double kStartLevel = 1.02, kLeastShare = 0.1;
   static constexpr double kShortWay = 0.3, kRecentre = 0.5, kLeastMargin = 1e-3, kMostMargin = 0.02;
+  static constexpr double kRestartLevel = 1.5, kCarefulLeft = 0.5;
+  static constexpr int kShortSteps = 2, kMostPatience = 32;
   using Unknowns = typename Model::Unknowns;
   struct Point {
-    double dual, gap, kappa;
+    double dual, gap, per_gap, kappa;
     double d_dual, d_gap, bend, target;
     dvec2 along;
     Unknowns g;
   };
+
+  void set_level(double above) {
+    level_ = above * largest();
+    double sum = 0;
+    for (int i = 0; i < n_; ++i) sum += points_[i].dual;
+    for (int i = 0; i < n_; ++i) {
+      points_[i].dual /= sum;
+      points_[i].gap = level_ - columns_.f[i];
+    }
+  }
+  /// Keeps the iterate and goes back to the middle, from there on with smaller reductions of μ:
+  /// complementarity that has fallen ahead of stationarity cannot be mended by steps along the boundary.
+  bool restart() {
+    if (patience_ > kMostPatience) return false;
+    for (int i = 0; i < n_; ++i) points_[i].dual = 1.0 / n_;
+    set_level(kRestartLevel);
+    short_steps_ = 0;
+    patience_ *= 2;
+    least_left_ = kCarefulLeft;
+    return true;
+  }
 
   double largest() const { return *std::max_element(columns_.f, columns_.f + n_); }
   double complementarity() const {
@@ -109,7 +131,8 @@ class InteriorPoint {
     for (int i = 0; i < n_; ++i) {
       Point& p = points_[i];
       p.g = model_.gradient(i);
-      p.kappa = p.dual / p.gap;
+      p.per_gap = 1 / p.gap;
+      p.kappa = p.dual * p.per_gap;
       sum_kappa_ += p.kappa;
       sum_dual_ += p.dual;
       add_scaled<kUnknowns>(mean_, p.kappa, p.g);
@@ -132,7 +155,7 @@ class InteriorPoint {
     double sum = sum_dual_ - 1;
     Unknowns b = stationarity_;
     for (int i = 0; i < n_; ++i) {
-      const double e = points_[i].target / points_[i].gap;
+      const double e = points_[i].target * points_[i].per_gap;
       sum += e;
       add_scaled<kUnknowns>(b, e, points_[i].g);
     }
@@ -146,7 +169,7 @@ class InteriorPoint {
       p.along = model_.along(i, dx_);
       p.bend = model_.bend(i, p.along, dx_);
       p.d_gap = d_level_ + 2 * (columns_.rx[i] * p.along.x + columns_.ry[i] * p.along.y);
-      p.d_dual = p.target / p.gap - p.kappa * p.d_gap;
+      p.d_dual = p.target * p.per_gap - p.kappa * p.d_gap;
     }
   }
 
@@ -183,7 +206,9 @@ class InteriorPoint {
     return a;
   }
 
-  bool move(double a) {
+  /// The share of the step that stays inside, halved from `a`; 0 if none does, and the iterate is then
+  /// unchanged.
+  double move(double a) {
     const Unknowns x = model_.x;
     const double level = level_;
     for (int tries = 0; tries < kMostHalvings; ++tries, a *= 0.5) {
@@ -195,19 +220,21 @@ class InteriorPoint {
         points_[i].gap = level_ - columns_.f[i];
         points_[i].dual += a * points_[i].d_dual;
       }
-      return true;
+      return a;
     }
     model_.x = x;
     level_ = level;
     model_.update();
-    return false;
+    return 0;
   }
 
-   Model& model_;
+  Model& model_;
   ResidualColumns& columns_;
   const int n_;
   double level_ = 0, d_level_ = 0, sum_kappa_ = 0, sum_dual_ = 0;
   Unknowns mean_{}, stationarity_{}, dx_{};
+  double least_left_ = 0;
+  int short_steps_ = 0, patience_ = kShortSteps;
   Cholesky<kUnknowns> root_;
   Point* points_;
   Point inline_[kInline];

@@ -18,7 +18,8 @@ dvec2 mean_of(std::span<const dvec2> points) {
 /// The row kᵢ of K for any point p̂ᵢ: the dual of the basis (along the long axis, across it).
 class RowOfK {
  public:
-  RowOfK(std::span<const dvec2> then_px, const Spread& spread) : spread_(spread) {
+  RowOfK(std::span<const dvec2> then_px, const Spread& spread)
+      : centroid_(spread.centroid), axis_(spread.axis), per_sigma_(1 / spread.sigma_1, 1 / spread.sigma_2) {
     double uv = 0, vv = 0, uu = 0;
     for (const dvec2& p : then_px) {
       const dvec2 q = along_axes(p);
@@ -31,22 +32,20 @@ class RowOfK {
 
   dvec2 operator()(dvec2 p) const {
     const dvec2 q = along_axes(p);
-    const double across = (q.y - slant_ * q.x) * per_v_ / spread_.sigma_2;
-    const double along =
-        q.x * per_u_ / spread_.sigma_1 - slant_ * across * (spread_.sigma_2 / spread_.sigma_1);
-    const dvec2 axis = spread_.axis;
-    return {along * axis.x - across * axis.y, along * axis.y + across * axis.x};
+    const double across = (q.y - slant_ * q.x) * per_v_, along = q.x * per_u_ - slant_ * across;
+    const dvec2 k = dvec2{along, across} * per_sigma_;
+    return {k.x * axis_.x - k.y * axis_.y, k.x * axis_.y + k.y * axis_.x};
   }
 
  private:
   /// In units of the spread along each axis, so that neither large nor tiny sprites leave the range of a
   /// double.
   dvec2 along_axes(dvec2 p) const {
-    const dvec2 d = p - spread_.centroid, axis = spread_.axis;
-    return {(d.x * axis.x + d.y * axis.y) / spread_.sigma_1, (d.y * axis.x - d.x * axis.y) / spread_.sigma_2};
+    const dvec2 d = p - centroid_;
+    return dvec2{d.x * axis_.x + d.y * axis_.y, d.y * axis_.x - d.x * axis_.y} * per_sigma_;
   }
 
-  Spread spread_;
+  dvec2 centroid_, axis_, per_sigma_;
   double slant_ = 0, per_u_ = 0, per_v_ = 0;
 };
 

@@ -141,9 +141,7 @@ struct XyScaleModel : LinearModel<XyScaleModel, 4> {
     };
     return row(c.qx, c.dx, root_x, &x[0]) && row(c.qy, c.dy, root_y, &x[2]);
   }
-  Unknowns transposed(int i, dvec2 v) const {
-    return {v.x, v.x * columns.qx[i], v.y, v.y * columns.qy[i]};
-  }
+  Unknowns transposed(int i, dvec2 v) const { return {v.x, v.x * columns.qx[i], v.y, v.y * columns.qy[i]}; }
   void forward(Unknowns& g) const {
     Vec<2> gx{g[0], g[1]}, gy{g[2], g[3]};
     root_x.forward(gx);
@@ -193,9 +191,7 @@ struct IsotropicModel : LinearModel<IsotropicModel, 3> {
     x = b;
     return true;
   }
-  Unknowns transposed(int i, dvec2 v) const {
-    return {v.x, v.y, v.x * columns.qx[i] + v.y * columns.qy[i]};
-  }
+  Unknowns transposed(int i, dvec2 v) const { return {v.x, v.y, v.x * columns.qx[i] + v.y * columns.qy[i]}; }
   void forward(Unknowns& g) const { root.forward(g); }
   dvec2 along(int i, const Unknowns& s) const {
     return {s[0] + s[2] * columns.qx[i], s[1] + s[2] * columns.qy[i]};

@@ -10,8 +10,8 @@
 
 namespace talisman::warp {
 
-/// The answer to input that no solver should see: a coordinate that is no number (NotFinite, the identity), or
-/// fewer points than the family needs (TooFewPoints, the best translation). Sizes must agree (programmer
+/// The answer to input that no solver should see: a coordinate that is no number (NotFinite, the identity),
+/// or fewer points than the family needs (TooFewPoints, the best translation). Sizes must agree (programmer
 /// error).
 std::optional<FitResult> refuse(std::span<const dvec2> then_px, std::span<const dvec2> now_px, Family family);
 

@@ -18,9 +18,9 @@ namespace {
 //
 //   e₁ = Σ u_x q,  e₂ = Σ u_y q,  e₃ = Σ (u·d - τ ‖u‖) q,  q = (1, q_x, q_y),  h₁ h₂ h₃ the rows of the map.
 //
-// At the optimum, with uᵢ = λᵢ rᵢ / denᵢ and τ = Σ λ ‖r‖² / Σ λ ‖r‖, all e vanish and τ is the optimum. Near it
-// the remainder is bounded by the terms themselves: with V = Σ ‖u‖² q qᵀ = L Lᵀ, h₃ᵀV h₃ = Σ (‖u‖ den)² ≤ D²
-// because no term is negative, and likewise h₁ᵀV h₁ ≤ (max |d_x| + upper)² D². Hence
+// At the optimum, with uᵢ = λᵢ rᵢ / denᵢ and τ = Σ λ ‖r‖² / Σ λ ‖r‖, all e vanish and τ is the optimum. Near
+// it the remainder is bounded by the terms themselves: with V = Σ ‖u‖² q qᵀ = L Lᵀ, h₃ᵀV h₃ = Σ (‖u‖ den)² ≤
+// D² because no term is negative, and likewise h₁ᵀV h₁ ≤ (max |d_x| + upper)² D². Hence
 //
 //   t ≥ τ - ‖L⁻¹e₁‖ (max |d_x| + upper) - ‖L⁻¹e₂‖ (max |d_y| + upper) - ‖L⁻¹e₃‖.
 //
@@ -119,7 +119,7 @@ class PostDivideRun {
   const Progress<PostDivideModel>& progress() const { return progress_; }
 
  private:
-  static constexpr int kMostSteps = 60;
+  static constexpr int kMostSteps = 200;
   // More corrections gain nothing: the remainder is then rounding.
   static constexpr int kCorrections = 2;
 

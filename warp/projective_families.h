@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The two perspective problems, as the solvers see them. In the columns' coordinates (q whitened and centred, d
-/// centred, E = the extent of d)
+/// The two perspective problems, as the solvers see them. In the columns' coordinates (q whitened and
+/// centred, d centred, E = the extent of d)
 ///
 ///   num = (x₀ + x₁ q_x + x₂ q_y,  x₃ + x₄ q_x + x₅ q_y)      den = 1 + (x₆ q_x + x₇ q_y) / E
 ///
@@ -11,8 +11,9 @@
 ///
 ///   J = m (1, q_x, q_y | 1, q_x, q_y | -v q_x / E, -v q_y / E)
 ///
-///   homogeneous    r = d den - num         m = 1        v = d            linear in x, ‖r‖ = den · error in pixels
-///   post-divide    r = d - num / den       m = 1/den    v = num / den    quasiconvex where all den > 0
+///   homogeneous    r = d den - num         m = 1        v = d            linear in x, ‖r‖ = den · error in
+///   pixels post-divide    r = d - num / den       m = 1/den    v = num / den    quasiconvex where all den >
+///   0
 
 #include "warp/residual_columns.h"
 #include "warp/small_dense.h"
@@ -29,8 +30,7 @@ struct ProjectiveModel {
   double per_extent;
 
   explicit ProjectiveModel(ResidualColumns& residual_columns)
-      : columns(residual_columns),
-        per_extent(columns.now_extent() > 0 ? 1 / columns.now_extent() : 1) {}
+      : columns(residual_columns), per_extent(columns.now_extent() > 0 ? 1 / columns.now_extent() : 1) {}
 
   dvec2 numerator(int i, const Unknowns& s) const {
     const double qx = columns.qx[i], qy = columns.qy[i];

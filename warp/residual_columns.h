@@ -4,8 +4,9 @@
 /// The point pairs as the maximum-norm solvers see them: centred, the points then also whitened, one column
 /// per quantity.
 ///
-///   q = T (p̂ - ĉ)      mean 0; for affine and perspective Σ q qᵀ = n I, otherwise scaled only (see Whitening)
-///   d = (p - c) / unit  mean 0; the unit is 1 px, or a power of two px where squares of squares of d could
+///   q = T (p̂ - ĉ)      mean 0; for affine and perspective Σ q qᵀ = n I, otherwise scaled only (see
+///   Whitening) d = (p - c) / unit  mean 0; the unit is 1 px, or a power of two px where squares of squares
+///   of d could
 ///                       overflow or vanish
 ///   rᵢ = dᵢ - W̃(qᵢ)     the residual of the current iterate, units;  fᵢ = ‖rᵢ‖²
 ///   uᵢ                  scratch for the multipliers of a certificate
@@ -49,7 +50,8 @@ class ResidualColumns {
   double now_extent() const { return now_extent_; }
   /// Rounding that the columns d, q and r carry, units: what a lower bound computed from them must give away.
   double column_rounding() const { return column_rounding_; }
-  /// Rounding of a residual evaluated from the warp's coefficients in pixels, units; larger far from the origin.
+  /// Rounding of a residual evaluated from the warp's coefficients in pixels, units; larger far from the
+  /// origin.
   double pixel_rounding() const { return pixel_rounding_; }
 
   const int n;

@@ -108,19 +108,6 @@ int degrees_of_freedom(Family family) {
   TALISMAN_CHECK(false && "no such family");
 }
 
-dvec2 Warp::operator()(dvec2 p) const {
-  const dmat3& m = now_from_then;
-  const dvec2 image{m[0].x * p.x + m[1].x * p.y + m[2].x, m[0].y * p.x + m[1].y * p.y + m[2].y};
-  if (is_affine()) return image;
-  const double w = denominator(p);
-  return {image.x / w, image.y / w};
-}
-
-double Warp::denominator(dvec2 p) const {
-  if (is_affine()) return 1;
-  return now_from_then[0].z * p.x + now_from_then[1].z * p.y + now_from_then[2].z;
-}
-
 bool Warp::is_identity() const {
   const double scale = now_from_then[2].z;
   return scale > 0 && now_from_then == dmat3(scale);

@@ -4,7 +4,9 @@
 /// The 2-D maps that carry an old picture to a new one [LS97 4, 4.2].
 ///
 /// A `Warp` maps display pixels at the layer's last render (`then`) to display pixels now. Its matrix acts on
-/// homogeneous columns (x, y, 1) and, for the perspective family only, divides by the third component.
+/// homogeneous columns (x, y, 1) and, for the perspective family only, divides by the third component. A
+/// homography is the same under any positive scale; those of the fits are scaled to a denominator of 1 at the
+/// centroid of the points then.
 ///
 ///   translation     isotropic        x/y scale        affine           perspective
 ///   1 0 tx          s 0 tx           a 0 tx           a b tx           a b tx
@@ -43,9 +45,16 @@ struct Warp {
   dmat3 now_from_then{1.0};
 
   /// The image of a point. For perspective the denominator must be positive (see denominator()).
-  dvec2 operator()(dvec2 p) const;
+  dvec2 operator()(dvec2 p) const {
+    const dmat3& m = now_from_then;
+    const dvec2 image{m[0].x * p.x + m[1].x * p.y + m[2].x, m[0].y * p.x + m[1].y * p.y + m[2].y};
+    return is_affine() ? image : image / denominator(p);
+  }
   /// Third homogeneous component at p; 1 for all families but perspective.
-  double denominator(dvec2 p) const;
+  double denominator(dvec2 p) const {
+    const dmat3& m = now_from_then;
+    return is_affine() ? 1 : m[0].z * p.x + m[1].z * p.y + m[2].z;
+  }
   bool is_identity() const;
   bool is_affine() const { return family != Family::Perspective; }
   /// The 2×3 part. Programmer error for a perspective warp.
