@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// talisman_import PATH SECONDS MEGABYTES: reads a model with assimp and writes it to stdout as a scene stream. Started by
-// import_model; limits itself first, so that nothing in the file can take more than that.
+// talisman_import PATH SECONDS MEGABYTES: reads a model with assimp and writes it to stdout as a scene
+// stream. Started by import_model; limits itself first, so that nothing in the file can take more than that.
 
 #include <csignal>
 #include <cstdio>
@@ -29,7 +29,8 @@ void limit_ourselves(int seconds, long megabytes) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   limit(RLIMIT_CPU, static_cast<rlim_t>(seconds));
   limit(RLIMIT_CORE, 0);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they reserve terabytes of address space
+#if !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)  // they reserve terabytes of address space
   limit(RLIMIT_AS, static_cast<rlim_t>(megabytes) << 20);
 #else
   (void)megabytes;

@@ -30,7 +30,8 @@ void add_key(YamlMap key, layers::FlightTrack& flight) {
   flight.position.times_s.push_back(t);
   flight.position.values.push_back(position);
   if (has_target) flight.target.times_s.push_back(t), flight.target.values.push_back(target);
-  if (has_bank) flight.bank_rad.times_s.push_back(t), flight.bank_rad.values.push_back(glm::radians(bank_deg));
+  if (has_bank)
+    flight.bank_rad.times_s.push_back(t), flight.bank_rad.values.push_back(glm::radians(bank_deg));
 }
 
 layers::FlightTrack read_flight(const YamlValue& keys) {
@@ -44,7 +45,8 @@ layers::FlightTrack read_flight(const YamlValue& keys) {
 layers::SpinTrack read_spin(YamlMap map) {
   layers::SpinTrack spin;
   double deg_per_s = 0;
-  if (map.has("axis") && glm::length(map.need("axis").vector()) == 0) map.need("axis").fail("not the zero vector");
+  if (map.has("axis") && glm::length(map.need("axis").vector()) == 0)
+    map.need("axis").fail("not the zero vector");
   map.read("axis", spin.axis);
   map.need("deg_per_s");
   map.read("deg_per_s", deg_per_s, kAnyNumber);
@@ -62,7 +64,8 @@ glm::dquat looking(const layers::dvec3& from, const YamlValue& at) {
   return glm::normalize(glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z)));
 }
 
-/// The keys position, rotation_deg, look_at, flight and spin; a flight excludes the three that say where something rests.
+/// The keys position, rotation_deg, look_at, flight and spin; a flight excludes the three that say where
+/// something rests.
 Motion read_motion(YamlMap& map) {
   Motion motion;
   layers::dvec3 rotation_deg{0};
@@ -161,7 +164,8 @@ void read_interval(YamlMap& map, const char* key, const Range& range, layers::dv
 
 SkyContent read_sky(YamlMap map) {
   SkyContent sky;
-  if (const YamlValue* kind = map.find("kind")) sky.kind = static_cast<SkyContent::Kind>(kind->choice({"dome", "backdrop"}));
+  if (const YamlValue* kind = map.find("kind"))
+    sky.kind = static_cast<SkyContent::Kind>(kind->choice({"dome", "backdrop"}));
   const bool flat = sky.kind == SkyContent::Kind::Backdrop;
   map.read("name", sky.name);
   map.read("center", sky.center);

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What a sequence file says about its scene, as data: read from YAML without opening any asset. `build_scene` then opens the
-/// assets. All units are those of the file: metres, seconds, degrees (docs/sequence-format.md).
+/// What a sequence file says about its scene, as data: read from YAML without opening any asset.
+/// `build_scene` then opens the assets. All units are those of the file: metres, seconds, degrees
+/// (docs/sequence-format.md).
 
 #include <optional>
 #include <string>
@@ -24,17 +25,17 @@ struct Motion {
 };
 
 struct ModelInstance {
-  std::string name;                      ///< of its node; its parts are called name/…
+  std::string name;  ///< of its node; its parts are called name/…
   Motion motion;
 };
 
 struct ModelRecipe {
   std::string file;
   double scale = 1;
-  std::optional<double> length_m;        ///< instead of scale: the longest side of the bounds
-  layers::dvec3 turn_deg{0, 0, 0};       ///< about x, then y, then z
-  bool centered = false;                 ///< the middle of the bounds becomes the origin
-  bool two_sided = false;                ///< for files with careless windings
+  std::optional<double> length_m;   ///< instead of scale: the longest side of the bounds
+  layers::dvec3 turn_deg{0, 0, 0};  ///< about x, then y, then z
+  bool centered = false;            ///< the middle of the bounds becomes the origin
+  bool two_sided = false;           ///< for files with careless windings
   std::vector<ModelInstance> instances;
 };
 
@@ -52,7 +53,8 @@ struct SceneRecipe {
   layers::vec3 background{0, 0, 0};
 };
 
-/// Takes the keys background, models, terrain, sky, camera and lights out of the map; leaves the others alone.
+/// Takes the keys background, models, terrain, sky, camera and lights out of the map; leaves the others
+/// alone.
 SceneRecipe read_scene_recipe(YamlMap& sequence);
 
 struct BuiltScene {
@@ -61,12 +63,12 @@ struct BuiltScene {
   std::vector<std::string> warnings;
 };
 
-/// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of `add_default_view`; cameras
-/// and lights inside its models are not used.
+/// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of
+/// `add_default_view`; cameras and lights inside its models are not used.
 BuiltScene build_scene(const SceneRecipe& recipe);
 
-/// An orbit around all parts (one turn in 5 s, seen slightly from above) if there is no camera; a sun and ambient light if
-/// there is no light. Any unit scale is framed.
+/// An orbit around all parts (one turn in 5 s, seen slightly from above) if there is no camera; a sun and
+/// ambient light if there is no light. Any unit scale is framed.
 void add_default_view(layers::Scene& scene);
 
 /// Bounds of all parts over the scene's duration (sampled at 9 times).

@@ -13,8 +13,8 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr int kOrbitFrames = 120;      // one turn, see add_default_view
-constexpr double kMaxModel_s = 20;     // longer animations are cut
+constexpr int kOrbitFrames = 120;   // one turn, see add_default_view
+constexpr double kMaxModel_s = 20;  // longer animations are cut
 
 bool is_yaml(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
@@ -68,15 +68,18 @@ void finish(Sequence& sequence, BuiltScene built, const std::vector<layers::Laye
 /// The place of the layer that a defect speaks of; the defect begins with "layer 'NAME'".
 [[noreturn]] void fail_at_layer(const SequenceFile& file, const std::string& defect) {
   for (const LayerEntry& entry : file.layers)
-    if (defect.rfind("layer '" + entry.spec.name + "':", 0) == 0) throw InputError(defect, entry.file, entry.line);
+    if (defect.rfind("layer '" + entry.spec.name + "':", 0) == 0)
+      throw InputError(defect, entry.file, entry.line);
   throw InputError(defect, file.settings.file);
 }
 
 Sequence load_yaml(const std::string& path) {
   SequenceFile file = read_sequence_file(path);
   BuiltScene built = build_scene(file.recipe);
-  if (const std::string defect = layers::first_defect(built.scene); !defect.empty()) throw InputError(defect, path);
-  if (built.scene.parts.empty()) throw InputError("shows nothing, rule: at least one of models, terrain and sky", path);
+  if (const std::string defect = layers::first_defect(built.scene); !defect.empty())
+    throw InputError(defect, path);
+  if (built.scene.parts.empty())
+    throw InputError("shows nothing, rule: at least one of models, terrain and sky", path);
   std::vector<layers::LayerSpec> specs;
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   if (specs.empty()) specs = specs_of_model(built.scene, built.layer_tags);
@@ -95,7 +98,8 @@ Sequence load_model(const std::string& path) {
   sequence.name = std::filesystem::path(path).stem().string();
   sequence.file = path;
   const double duration = std::min(model.scene.duration_s(), kMaxModel_s);
-  sequence.frames = duration > 0 ? std::max(1, static_cast<int>(std::lround(duration * sequence.fps))) : kOrbitFrames;
+  sequence.frames =
+      duration > 0 ? std::max(1, static_cast<int>(std::lround(duration * sequence.fps))) : kOrbitFrames;
   add_default_view(model.scene);
   const auto specs = specs_of_model(model.scene, model.layer_tags);
   finish(sequence, {std::move(model.scene), {}, std::move(model.warnings)}, specs);
@@ -117,7 +121,8 @@ Sequence load_sequence(const std::string& name_or_path) {
     return is_yaml(name_or_path) ? load_yaml(name_or_path) : load_model(name_or_path);
   const std::string shipped = sequence_file_of(name_or_path);
   if (shipped.empty())
-    throw InputError("'" + name_or_path + "' is no sequence and no file; sequences are: " + joined(known_sequences()));
+    throw InputError("'" + name_or_path +
+                     "' is no sequence and no file; sequences are: " + joined(known_sequences()));
   return load_yaml(shipped);
 }
 

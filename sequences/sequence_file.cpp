@@ -30,7 +30,8 @@ layers::LayerPreferences read_preferences(YamlMap map) {
   map.read("min_update_rate", preferences.min_update_rate, {0, 1});
   map.read("max_update_rate", preferences.max_update_rate, {0, 1, true});
   map.read("share_of_expected_motion", preferences.share_of_expected_motion, kNotNegative);
-  if (const YamlValue* importance = map.find("importance")) preferences.importance = read_importance(importance->map());
+  if (const YamlValue* importance = map.find("importance"))
+    preferences.importance = read_importance(importance->map());
   map.finish();
   return preferences;
 }
@@ -43,7 +44,8 @@ LayerEntry read_layer(const YamlValue& value) {
   entry.spec.name = map.need("name").text();
   for (const YamlValue& glob : map.need("parts").items()) entry.spec.part_globs.push_back(glob.text());
   if (const YamlValue* group = map.find("group"))
-    entry.spec.group = static_cast<layers::OrderGroup>(group->choice({"background", "normal", "foreground"}) - 1);
+    entry.spec.group =
+        static_cast<layers::OrderGroup>(group->choice({"background", "normal", "foreground"}) - 1);
   if (const YamlValue* preferences = map.find("preferences"))
     entry.spec.preferences = read_preferences(preferences->map());
   map.finish();
@@ -114,7 +116,8 @@ void read_settings(YamlMap& map, Sequence& sequence) {
     sequence.bound = static_cast<layers::BoundKind>(v->choice({"box8", "dop14", "dop26"}));
   if (const YamlValue* v = map.find("warp")) {
     sequence.warp = v->text();
-    if (!warp::curve_from_name(sequence.warp)) v->fail("one of the curves of [LS97 4.2], such as trn, so, aff, per2");
+    if (!warp::curve_from_name(sequence.warp))
+      v->fail("one of the curves of [LS97 4.2], such as trn, so, aff, per2");
   }
 }
 

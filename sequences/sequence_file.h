@@ -13,14 +13,14 @@ namespace talisman::sequences {
 
 struct LayerEntry {
   layers::LayerSpec spec;
-  std::string file;                  ///< and line: where it is written, for errors that show only with the scene
+  std::string file;  ///< and line: where it is written, for errors that show only with the scene
   int line = 0;
 };
 
 struct SequenceFile {
-  Sequence settings;                 ///< without scene and layers
+  Sequence settings;  ///< without scene and layers
   SceneRecipe recipe;
-  std::vector<LayerEntry> layers;    ///< empty: one per moving or top-level node
+  std::vector<LayerEntry> layers;  ///< empty: one per moving or top-level node
 };
 
 /// Reads and checks the whole file, and that the assets it names are there. Throws InputError.

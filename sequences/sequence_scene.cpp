@@ -12,17 +12,18 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr double kOrbitTurn_s = 5;         // one turn of the orbiting camera: 120 frames at 24 per second
+constexpr double kOrbitTurn_s = 5;  // one turn of the orbiting camera: 120 frames at 24 per second
 constexpr double kOrbitElevation_rad = 0.3;
 constexpr double kOrbitFov_rad = 0.7;
-constexpr double kOrbitRoom = 1.08;        // the sphere around all parts fills the picture but for this
+constexpr double kOrbitRoom = 1.08;  // the sphere around all parts fills the picture but for this
 
 int add_node(layers::Scene& scene, const std::string& name, int parent, const layers::Transform& local = {}) {
   scene.nodes.push_back({name, parent, local});
   return static_cast<int>(scene.nodes.size()) - 1;
 }
 
-/// The node (with one below it for a spin, so that both motions add up) that carries something; returns the lowest.
+/// The node (with one below it for a spin, so that both motions add up) that carries something; returns the
+/// lowest.
 int add_motion(layers::Scene& scene, const std::string& name, const Motion& motion) {
   int node = add_node(scene, name, -1, motion.rest);
   if (motion.flight) scene.tracks.push_back({node, *motion.flight});
@@ -56,8 +57,8 @@ SharedContent add_content(layers::Scene& scene, const layers::Scene& model, bool
   return at;
 }
 
-/// Nodes, skins, tracks and parts of one instance below `carrier`. Lights and cameras of a model are left out: a sequence
-/// has its own.
+/// Nodes, skins, tracks and parts of one instance below `carrier`. Lights and cameras of a model are left
+/// out: a sequence has its own.
 void add_instance(BuiltScene& built, const ImportedModel& model, const SharedContent& content, int carrier,
                   const std::string& name) {
   layers::Scene& scene = built.scene;
@@ -82,7 +83,8 @@ void add_instance(BuiltScene& built, const ImportedModel& model, const SharedCon
     part.skin = shifted(part.skin, skins);
     scene.parts.push_back(std::move(part));
   }
-  for (const LayerTag& tag : model.layer_tags) built.layer_tags.push_back({shifted(tag.node, nodes), tag.layer});
+  for (const LayerTag& tag : model.layer_tags)
+    built.layer_tags.push_back({shifted(tag.node, nodes), tag.layer});
 }
 
 /// Turned, scaled and, if wished, centred.
@@ -97,7 +99,8 @@ layers::Transform fitting(const ModelRecipe& recipe, const layers::Scene& model)
     if (longest > 0) scale = *recipe.length_m / longest;
   }
   fit.scale = layers::dvec3(scale);
-  if (recipe.centered && !bounds.empty()) fit.translation = fit.rotation * (-0.5 * scale * (bounds.lo + bounds.hi));
+  if (recipe.centered && !bounds.empty())
+    fit.translation = fit.rotation * (-0.5 * scale * (bounds.lo + bounds.hi));
   return fit;
 }
 

@@ -45,9 +45,11 @@ layers::Texture read_open_image(std::unique_ptr<OIIO::ImageInput> input, const s
     throw InputError("not an image that can be read: " + (why.empty() ? "unknown format" : why), name);
   }
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide || spec.nchannels < 1)
+  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide ||
+      spec.nchannels < 1)
     throw InputError("image of " + std::to_string(spec.width) + " × " + std::to_string(spec.height) + " × " +
-                         std::to_string(spec.nchannels) + ", rule: sides from 1 to " + std::to_string(kMaxSide),
+                         std::to_string(spec.nchannels) + ", rule: sides from 1 to " +
+                         std::to_string(kMaxSide),
                      name);
   layers::Texture texture;
   texture.name = name;

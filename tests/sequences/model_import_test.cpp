@@ -26,15 +26,19 @@ std::string square_obj(const std::string& head = "") {
 }
 
 /// 2 × 1 pixels: red, green (binary PPM).
-std::string red_green_ppm() { return std::string("P6\n2 1\n255\n") + '\xff' + '\0' + '\0' + '\0' + '\xff' + '\0'; }
+std::string red_green_ppm() {
+  return std::string("P6\n2 1\n255\n") + '\xff' + '\0' + '\0' + '\0' + '\xff' + '\0';
+}
 
 std::string base64(const std::string& bytes) {
   static const char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
   std::string text;
   for (std::size_t i = 0; i < bytes.size(); i += 3) {
     unsigned v = 0;
-    for (std::size_t k = 0; k < 3; ++k) v = v << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (int k = 0; k < 4; ++k) text += i + static_cast<std::size_t>(k) <= bytes.size() ? kDigits[v >> (18 - 6 * k) & 63] : '=';
+    for (std::size_t k = 0; k < 3; ++k)
+      v = v << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    for (int k = 0; k < 4; ++k)
+      text += i + static_cast<std::size_t>(k) <= bytes.size() ? kDigits[v >> (18 - 6 * k) & 63] : '=';
   }
   return text;
 }
@@ -44,7 +48,8 @@ void put(std::string& bytes, std::initializer_list<T> values) {
   for (const T& v : values) bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
 }
 
-/// A triangle on a node that moves from x = 0 to x = 10 in 2 s, below a node with extras.layer, with a metallic material.
+/// A triangle on a node that moves from x = 0 to x = 10 in 2 s, below a node with extras.layer, with a
+/// metallic material.
 std::string moving_gltf() {
   std::string bytes;
   put<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0});  // positions, 36 bytes
@@ -81,17 +86,21 @@ TEST(ImportModel, ReadsTrianglesNormalsAndColours) {
 }
 
 TEST(ImportModel, FindsTexturesUnderOtherNames) {
-  // As written; other letter case; in ../textures; with the stem cut to 8 characters, as 3DS files have it; by another
-  // extension.
+  // As written; other letter case; in ../textures; with the stem cut to 8 characters, as 3DS files have it;
+  // by another extension.
   const std::vector<std::pair<std::string, std::string>> written_and_stored = {
-      {"paint.ppm", "models/paint.ppm"},        {"PAINT.PPM", "models/paint.ppm"},
-      {"c:\\art\\Paint.ppm", "models/paint.ppm"}, {"paint.ppm", "textures/Paint.PPM"},
-      {"longname.ppm", "textures/longname_of_it.ppm"}, {"paint.rgb", "textures/paint.ppm"}};
+      {"paint.ppm", "models/paint.ppm"},
+      {"PAINT.PPM", "models/paint.ppm"},
+      {"c:\\art\\Paint.ppm", "models/paint.ppm"},
+      {"paint.ppm", "textures/Paint.PPM"},
+      {"longname.ppm", "textures/longname_of_it.ppm"},
+      {"paint.rgb", "textures/paint.ppm"}};
   for (const auto& [written, stored] : written_and_stored) {
     const TemporaryFolder folder;
     folder.write(stored, red_green_ppm());
     folder.write("models/square.mtl", "newmtl paint\nmap_Kd " + written + "\n");
-    const ImportedModel model = import_model(folder.write("models/square.obj", square_obj("mtllib square.mtl\n")));
+    const ImportedModel model =
+        import_model(folder.write("models/square.obj", square_obj("mtllib square.mtl\n")));
     EXPECT_THAT(model.warnings, IsEmpty()) << written;
     ASSERT_EQ(model.scene.textures.size(), 1u) << written << " should be found as " << stored;
     EXPECT_EQ(model.scene.textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255, 0, 255, 0, 255}));
@@ -128,8 +137,8 @@ TEST(ImportModel, GltfBringsMotionLayerTagAndLinearColour) {
   const layers::Material& gold = model.scene.materials[part.material];
   EXPECT_NEAR(gold.base_color.x, 0.5, 1e-6);  // not decoded from sRGB
   EXPECT_TRUE(gold.two_sided);
-  EXPECT_NEAR(gold.shininess, 30, 1e-3);      // 2 / 0.5⁴ − 2
-  EXPECT_NEAR(gold.specular.x, 0.25, 1e-6);   // metal: base colour, times 1 − roughness
+  EXPECT_NEAR(gold.shininess, 30, 1e-3);     // 2 / 0.5⁴ − 2
+  EXPECT_NEAR(gold.specular.x, 0.25, 1e-6);  // metal: base colour, times 1 − roughness
 }
 
 TEST(ImportModel, NotANumberPositionsNameTheMesh) {
@@ -143,17 +152,18 @@ TEST(ImportModel, NotANumberPositionsNameTheMesh) {
 TEST(ImportModel, WhatIsNoModelIsRefusedWithItsName) {
   const TemporaryFolder folder;
   const std::string points = folder.write("points.obj", "v 0 0 0\nv 1 0 0\n");
-  for (const std::string& file : {folder.path() + "/missing.obj", folder.path(), folder.write("empty.obj", ""), points,
-                                  folder.write("noise.3ds", std::string(300, '\x7f')),
-                                  folder.write("half.gltf", moving_gltf().substr(0, 500)),
-                                  folder.write("text.xyz", "hello")}) {
+  for (const std::string& file :
+       {folder.path() + "/missing.obj", folder.path(), folder.write("empty.obj", ""), points,
+        folder.write("noise.3ds", std::string(300, '\x7f')),
+        folder.write("half.gltf", moving_gltf().substr(0, 500)), folder.write("text.xyz", "hello")}) {
     const std::string message = message_of([&] { import_model(file); });
     EXPECT_THAT(message, HasSubstr(file)) << file << " was not refused";
   }
 }
 
 TEST(ImportModel, EveryTruncationOfAModelEndsInOrder) {
-  // A truncated file may still be a model; but it never takes the tool down, and what comes is without defects.
+  // A truncated file may still be a model; but it never takes the tool down, and what comes is without
+  // defects.
   const TemporaryFolder folder;
   const std::string whole = moving_gltf();
   int refused = 0;
@@ -175,8 +185,13 @@ TEST(ImportModel, MemoryOfTheReaderIsLimited) {
   std::string obj;
   for (int i = 0; i < 400000; ++i) obj += "v " + std::to_string(i) + " 0 " + std::to_string(i % 7) + "\n";
   for (int i = 1; i < 399998; i += 3)
-    obj.append("f ").append(std::to_string(i)).append(" ").append(std::to_string(i + 1)).append(" ").append(
-        std::to_string(i + 2)).append("\n");
+    obj.append("f ")
+        .append(std::to_string(i))
+        .append(" ")
+        .append(std::to_string(i + 1))
+        .append(" ")
+        .append(std::to_string(i + 2))
+        .append("\n");
   const std::string file = folder.write("big.obj", obj);
   EXPECT_THROW(import_model(file, {.seconds = 60, .megabytes = 64}), InputError);
 }
@@ -187,7 +202,8 @@ TEST(LoadModel, BareModelIsFramedAtAnyUnit) {
     SCOPED_TRACE(unit);
     const TemporaryFolder folder;
     std::ostringstream obj;
-    obj << "v " << 3 * unit << " 0 0\nv " << 4 * unit << " 0 0\nv " << 3 * unit << " " << unit << " 0\nf 1 2 3\n";
+    obj << "v " << 3 * unit << " 0 0\nv " << 4 * unit << " 0 0\nv " << 3 * unit << " " << unit
+        << " 0\nf 1 2 3\n";
     const Sequence sequence = load_sequence(folder.write("thing.obj", obj.str()));
     EXPECT_EQ(sequence.name, "thing");
     EXPECT_EQ(sequence.frames, 120);
@@ -201,7 +217,8 @@ TEST(LoadModel, BareModelIsFramedAtAnyUnit) {
         const glm::dvec4 c = camera_from_world * glm::dvec4(p, 1);
         ASSERT_GT(-c.z, frame.camera.near_m);
         ASSERT_LT(-c.z, frame.camera.far_m);
-        const double reach = std::max(std::abs(c.x), std::abs(c.y)) / (-c.z * std::tan(frame.camera.fov_y_rad / 2));
+        const double reach =
+            std::max(std::abs(c.x), std::abs(c.y)) / (-c.z * std::tan(frame.camera.fov_y_rad / 2));
         ASSERT_LT(reach, 1) << "out of the picture at frame " << f;
         widest = std::max(widest, reach);
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The stream between the importer and the tool. Its reader meets whatever a crashing or captured child may send, so no input may
-// do more than throw InputError.
+// The stream between the importer and the tool. Its reader meets whatever a crashing or captured child may
+// send, so no input may do more than throw InputError.
 #include <algorithm>
 #include <cstring>
 #include <random>
@@ -60,7 +60,8 @@ TEST(SceneStream, ComesBackWithTheSameBytes) {
 }
 
 TEST(SceneStream, FieldsArriveWhereTheyBelong) {
-  // Equal bytes on both ways would also hold if two fields of one type were swapped in both; so some are looked at.
+  // Equal bytes on both ways would also hold if two fields of one type were swapped in both; so some are
+  // looked at.
   const layers::Scene scene = full_model().scene;
   const layers::Scene back = scene_from_bytes(bytes_from_scene(scene));
   EXPECT_EQ(back.meshes[0].weights, scene.meshes[0].weights);
@@ -79,7 +80,8 @@ TEST(SceneStream, FieldsArriveWhereTheyBelong) {
 TEST(SceneStream, EmptySceneIsAScene) { EXPECT_TRUE(scene_from_bytes(bytes_from_scene({})).parts.empty()); }
 
 TEST(SceneStream, EveryTruncationIsRefused) {
-  // Each length field, each array and each string is cut in its middle once, for the stream is short enough to try every end.
+  // Each length field, each array and each string is cut in its middle once, for the stream is short enough
+  // to try every end.
   const auto bytes = bytes_from_model(full_model());
   for (std::size_t n = 0; n < bytes.size(); ++n)
     ASSERT_FALSE(reads({bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(n)})) << "cut at " << n;
@@ -101,8 +103,10 @@ TEST(SceneStream, ForeignBytesAndOtherVersionsAreRefused) {
 }
 
 TEST(SceneStream, FalseLengthsAreNotBelieved) {
-  // 2⁶⁴ − 1 and a length whose product with the item size overflows to a small number: neither may be allocated.
-  for (const std::uint64_t length : {~std::uint64_t{0}, (~std::uint64_t{0} / 12) + 2, std::uint64_t{1} << 40}) {
+  // 2⁶⁴ − 1 and a length whose product with the item size overflows to a small number: neither may be
+  // allocated.
+  for (const std::uint64_t length :
+       {~std::uint64_t{0}, (~std::uint64_t{0} / 12) + 2, std::uint64_t{1} << 40}) {
     auto bytes = bytes_from_scene({});
     std::memcpy(&bytes[8], &length, sizeof length);  // of the list of meshes
     EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("length")) << length;
@@ -136,7 +140,8 @@ TEST(SceneStream, RandomDamageNeverDoesMoreThanThrow) {
     for (int k = 0; k < flips; ++k) damaged[random() % damaged.size()] = static_cast<std::uint8_t>(random());
     refused += reads(damaged) ? 0 : 1;
   }
-  // Most bytes are numbers that may have any value; but lengths, indices and choices are hit often enough to be noticed.
+  // Most bytes are numbers that may have any value; but lengths, indices and choices are hit often enough to
+  // be noticed.
   EXPECT_GT(refused, 200);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sequence files: what is right is understood, and what is wrong is refused with its line. The last tests fly through the canyon,
-// if its content was fetched.
+// Sequence files: what is right is understood, and what is wrong is refused with its line. The last tests fly
+// through the canyon, if its content was fetched.
 #include <cmath>
 #include <cstdlib>
 #include <sys/wait.h>
@@ -31,13 +31,15 @@ const std::vector<std::string> kLines = {
     /*8*/ "    file: box.obj",
     /*9*/ "    scale: 2",
     /*10*/ "    instances:",
-    /*11*/ "      - {name: one, flight: [{t: 0, position: [0, 0, 0], bank_deg: 90}, {t: 2, position: [0, 0, -8]}]}",
+    /*11*/
+    "      - {name: one, flight: [{t: 0, position: [0, 0, 0], bank_deg: 90}, {t: 2, position: [0, 0, -8]}]}",
     /*12*/ "      - {name: two, position: [5, 0, 0], spin: {axis: [0, 1, 0], deg_per_s: 90}}",
     /*13*/ "camera: {fov_deg: 60, near_m: 1, far_m: 100, position: [0, 0, 20], look_at: [0, 0, 0]}",
     /*14*/ "lights: [{kind: ambient, color: [0.2, 0.2, 0.2]}, {kind: directional, direction: [0, -1, 0]}]",
     /*15*/ "layers:",
     /*16*/ "  - {name: still, parts: [still/*]}",
-    /*17*/ "  - {name: fleet, parts: [one/*, two/*], group: foreground, preferences: {resolution_scale: 0.5}}",
+    /*17*/
+    "  - {name: fleet, parts: [one/*, two/*], group: foreground, preferences: {resolution_scale: 0.5}}",
     /*18*/ "regulator: {policy: hold, hold_frames: 5, geometric_px: 2, magnification: 0}",
     /*19*/ "warp: affi",
     /*20*/ "bound: dop14",
@@ -104,9 +106,9 @@ TEST(LoadSequence, ModelsStandWhereTheFileSays) {
 }
 
 struct Fault {
-  int line;                 ///< 1 …
-  std::string text;         ///< instead of that line
-  std::string message;      ///< part of the error
+  int line;             ///< 1 …
+  std::string text;     ///< instead of that line
+  std::string message;  ///< part of the error
 };
 
 TEST(LoadSequence, WhatIsWrongIsRefusedWithItsLine) {
@@ -127,15 +129,19 @@ TEST(LoadSequence, WhatIsWrongIsRefusedWithItsLine) {
       {6, "  - {id: still, file: \"no-such-package:/usr/a.obj\"}", "sequences/fetch-assets"},
       {6, "  - {id: still, file: box.obj, length_m: 0}", "models[0].length_m is '0', rule: a number above 0"},
       {6, "  - {id: still, file: box.obj, length_m: 1, scale: 1}", "not together with scale"},
-      {6, "  - {id: still, file: box.obj, centered: maybe}", "models[0].centered is 'maybe', rule: true or false"},
-      {6, "  - {id: still, file: box.obj, wings: 2}", "key 'wings' is not known here; keys are centered, file, flight"},
+      {6, "  - {id: still, file: box.obj, centered: maybe}",
+       "models[0].centered is 'maybe', rule: true or false"},
+      {6, "  - {id: still, file: box.obj, wings: 2}",
+       "key 'wings' is not known here; keys are centered, file, flight"},
       {6, "  - {id: still, id: other, file: box.obj}", "each key only once"},
       {11, "      - {name: one, flight: []}", "flight is a list of 0"},
       {11, "      - {name: one, flight: [{t: 1, position: [0, 0, 0]}, {t: 1, position: [1, 0, 0]}]}",
        "flight[1].t is '1', rule: after the key before it"},
-      {11, "      - {name: one, flight: [{t: 0, position: [0, .nan, 0]}]}", "position[1] is '.nan', rule: a finite number"},
+      {11, "      - {name: one, flight: [{t: 0, position: [0, .nan, 0]}]}",
+       "position[1] is '.nan', rule: a finite number"},
       {11, "      - {name: one, position: [1, 2]}", "position is a list of 2, rule: a list of 3 numbers"},
-      {12, "      - {name: two, spin: {axis: [0, 0, 0], deg_per_s: 1}}", "axis is a list of 3, rule: not the zero vector"},
+      {12, "      - {name: two, spin: {axis: [0, 0, 0], deg_per_s: 1}}",
+       "axis is a list of 3, rule: not the zero vector"},
       {13, "camera: {near_m: 5, far_m: 5}", "near_m below far_m"},
       {13, "camera: {fov_deg: 180}", "camera.fov_deg is '180', rule: a number from 1 to 170"},
       {13, "camera: {position: [1, 1, 1], look_at: [1, 1, 1]}", "rule: another place than position"},
@@ -144,9 +150,12 @@ TEST(LoadSequence, WhatIsWrongIsRefusedWithItsLine) {
       {14, "lights: [{kind: ambient, color: [-1, 0, 0]}]", "color[0] is '-1'"},
       {16, "  - {name: still, parts: [nothing/*]}", "layer 'still': part glob 'nothing/*' matches no part"},
       {16, "  - {name: fleet, parts: [still/*]}", "layer 'fleet': name is used twice"},
-      {16, "  - {name: still, parts: [still/*], group: middle}", "group is 'middle', rule: one of background, normal, foreground"},
-      {17, "  - {name: fleet, parts: [one/*], preferences: {resolution_scale: 5}}", "resolution_scale is '5', rule: a number above 0, at most 4"},
-      {18, "regulator: {policy: best}", "regulator.policy is 'best', rule: one of direct, reference, hold, interpolate, threshold"},
+      {16, "  - {name: still, parts: [still/*], group: middle}",
+       "group is 'middle', rule: one of background, normal, foreground"},
+      {17, "  - {name: fleet, parts: [one/*], preferences: {resolution_scale: 5}}",
+       "resolution_scale is '5', rule: a number above 0, at most 4"},
+      {18, "regulator: {policy: best}",
+       "regulator.policy is 'best', rule: one of direct, reference, hold, interpolate, threshold"},
       {18, "regulator: {magnification: 0.5}", "regulator.magnification is '0.5', rule: a number from 1"},
       {19, "warp: bent", "warp is 'bent'"},
       {20, "bound: sphere", "bound is 'sphere', rule: one of box8, dop14, dop26"},
@@ -171,8 +180,10 @@ TEST(LoadSequence, WhatIsNoMapOrNotThereIsRefused) {
   const TemporaryFolder folder;
   for (const std::string text : {"", "- 1\n- 2\n", "hello", "\t: [", "a: &a [*a]\n", "? [1]\n: 2\n"})
     EXPECT_NE(message_of([&] { load_sequence(folder.write("odd.yaml", text)); }), "") << text;
-  EXPECT_THAT(message_of([] { load_sequence("no-such-thing"); }), HasSubstr("sequences are: canyon, canyon/background"));
-  EXPECT_THAT(message_of([&] { load_sequence(folder.write("bare.yaml", "frames: 1\n")); }), HasSubstr("shows nothing"));
+  EXPECT_THAT(message_of([] { load_sequence("no-such-thing"); }),
+              HasSubstr("sequences are: canyon, canyon/background"));
+  EXPECT_THAT(message_of([&] { load_sequence(folder.write("bare.yaml", "frames: 1\n")); }),
+              HasSubstr("shows nothing"));
 }
 
 TEST(LoadSequence, DeepNestingIsRefusedBeforeTheStackEnds) {
@@ -185,13 +196,14 @@ TEST(LoadSequence, VariantSaysOnlyWhatIsDifferent) {
   const TemporaryFolder folder;
   folder.write("box.obj", kBox);
   folder.write("test.yaml", text_of(kLines));
-  const Sequence s = load_sequence(
-      folder.write("variant.yaml", "extends: test.yaml\nname: variant\nlayers: [{name: all, parts: ['*']}]\n"));
+  const Sequence s = load_sequence(folder.write(
+      "variant.yaml", "extends: test.yaml\nname: variant\nlayers: [{name: all, parts: ['*']}]\n"));
   EXPECT_EQ(s.name, "variant");
   EXPECT_EQ(s.frames, 48);
   ASSERT_EQ(s.layers.layers.size(), 1u);
   EXPECT_EQ(s.layers.layers[0].parts.size(), 3u);
-  EXPECT_THAT(message_of([&] { load_sequence(folder.write("loop.yaml", "extends: loop.yaml\n")); }), HasSubstr("circle"));
+  EXPECT_THAT(message_of([&] { load_sequence(folder.write("loop.yaml", "extends: loop.yaml\n")); }),
+              HasSubstr("circle"));
 }
 
 TEST(LoadSequence, WithoutLayersAndCameraTheyAreMadeUp) {
@@ -208,9 +220,9 @@ TEST(LoadSequence, WithoutLayersAndCameraTheyAreMadeUp) {
 
 /// sequences/fetch-assets with an apt-get and a dpkg of our own; returns its exit code.
 int fetch(const TemporaryFolder& folder, const std::string& name) {
-  const std::string command = "PATH='" + folder.path() + "/bin':$PATH TALISMAN_ASSETS='" + folder.path() + "/assets' '" +
-                              TALISMAN_SOURCE_DIR "/sequences/fetch-assets' '" + name + "' > '" + folder.path() +
-                              "/log' 2>&1";
+  const std::string command = "PATH='" + folder.path() + "/bin':$PATH TALISMAN_ASSETS='" + folder.path() +
+                              "/assets' '" + TALISMAN_SOURCE_DIR "/sequences/fetch-assets' '" + name +
+                              "' > '" + folder.path() + "/log' 2>&1";
   return WEXITSTATUS(std::system(command.c_str()));
 }
 
@@ -226,7 +238,8 @@ std::string log_of(const TemporaryFolder& folder) {
 
 TEST(FetchAssets, UnpacksWhatTheSequenceListsOnce) {
   const TemporaryFolder folder;
-  write_tool(folder, "apt-get", "echo \"$2\" >> '" + folder.path() + "/calls'; echo deb > \"$2_1_all.deb\"\n");
+  write_tool(folder, "apt-get",
+             "echo \"$2\" >> '" + folder.path() + "/calls'; echo deb > \"$2_1_all.deb\"\n");
   write_tool(folder, "dpkg", "mkdir -p \"$3/usr\" && cp \"$2\" \"$3/usr/content\"\n");
   const std::string file = folder.write("film.yaml", "name: film\npackages: [some-data, more.data]\n");
   EXPECT_EQ(fetch(folder, file), 0) << log_of(folder);
@@ -288,7 +301,8 @@ TEST_F(Canyon, NobodyTouchesTheGroundOrLeavesTheWalls) {
       // A fighter is 14 to 17 m long and as wide, so 9 m around its middle must be free.
       for (const layers::dvec3 offset : {layers::dvec3(0), layers::dvec3(9, 0, 0), layers::dvec3(-9, 0, 0),
                                          layers::dvec3(0, 0, 9), layers::dvec3(0, 0, -9)})
-        ASSERT_GT(clearance(p + offset), 1.0) << "frame " << step / 4.0 << " at " << p.x << " " << p.y << " " << p.z;
+        ASSERT_GT(clearance(p + offset), 1.0)
+            << "frame " << step / 4.0 << " at " << p.x << " " << p.y << " " << p.z;
       ASSERT_LT(std::abs(p.x), half_width - 20);
       ASSERT_LT(p.y, 150) << "above the rim";
     }

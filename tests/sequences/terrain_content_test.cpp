@@ -29,7 +29,8 @@ std::string pgm(int width, int height, const std::function<int(int, int)>& grey)
 
 std::string plain_ppm(int r, int g, int b, int size = 4) {
   std::string bytes = "P6\n" + std::to_string(size) + " " + std::to_string(size) + "\n255\n";
-  for (int i = 0; i < size * size; ++i) bytes.append({static_cast<char>(r), static_cast<char>(g), static_cast<char>(b)});
+  for (int i = 0; i < size * size; ++i)
+    bytes.append({static_cast<char>(r), static_cast<char>(g), static_cast<char>(b)});
   return bytes;
 }
 
@@ -98,7 +99,8 @@ TEST(AddTerrain, SegmentsGetTheirOwnTexturesAndTheColoursOfTheirClasses) {
       ASSERT_LT(mesh.uvs[i].x, 0.95f);
       ASSERT_GT(mesh.uvs[i].y, 0.05f);
       ASSERT_LT(mesh.uvs[i].y, 0.95f);
-      const int x = static_cast<int>(mesh.uvs[i].x * texture.width), y = static_cast<int>(mesh.uvs[i].y * texture.height);
+      const int x = static_cast<int>(mesh.uvs[i].x * texture.width),
+                y = static_cast<int>(mesh.uvs[i].y * texture.height);
       const std::uint8_t* texel = &texture.rgba[4 * (static_cast<std::size_t>(y) * texture.width + x)];
       const float metres = mesh.positions[i].x;  // the classes meet at x = 0, within one cell of 2 m
       const std::uint8_t red = texel[0], blue = texel[2];
@@ -112,12 +114,14 @@ TEST(AddTerrain, TexturesContinueOverTheSeams) {
   // The colour of a place may not depend on the segment that shows it; here it changes along the rows.
   const TemporaryFolder folder;
   TerrainContent content = two_class_terrain(folder);
-  content.classes_file = folder.write("rows.pgm", pgm(8, 21, [](int, int y) { return y % 3 == 0 ? 0 : 255; }));
+  content.classes_file =
+      folder.write("rows.pgm", pgm(8, 21, [](int, int y) { return y % 3 == 0 ? 0 : 255; }));
   const layers::HeightField field = read_height_field(content);
   const GroundPainter painter(content, field);
   const layers::Texture all = painter.bake({0, 0, 7, 20}, 4), part = painter.bake({0, 6, 7, 5}, 4);
   const std::size_t row_bytes = 4 * static_cast<std::size_t>(all.width);
-  EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(), all.rgba.begin() + static_cast<std::ptrdiff_t>(6 * 4 * row_bytes)));
+  EXPECT_TRUE(std::equal(part.rgba.begin(), part.rgba.end(),
+                         all.rgba.begin() + static_cast<std::ptrdiff_t>(6 * 4 * row_bytes)));
 }
 
 TEST(AddTerrain, WithoutClassesItIsOneColour) {
@@ -135,22 +139,25 @@ TEST(AddTerrain, ClassImageOfAnotherSizeIsRefused) {
   TerrainContent content = two_class_terrain(folder);
   content.classes_file = folder.write("small.pgm", pgm(7, 21, [](int, int) { return 0; }));
   layers::Scene scene;
-  EXPECT_THAT(message_of([&] { add_terrain(scene, content); }), HasSubstr("7 × 21, rule: as many pixels as the height map, 8 × 21"));
+  EXPECT_THAT(message_of([&] { add_terrain(scene, content); }),
+              HasSubstr("7 × 21, rule: as many pixels as the height map, 8 × 21"));
 }
 
 TEST(GroundClasses, ListIsReadAsTheGameReadsIt) {
   // Comments, entries over several lines, a texture without extension, an entry without colour.
   const TemporaryFolder folder;
-  const std::string file = folder.write("terrains.lst",
-                                        "# *[name] old [texture] old.png [col] 1 1 1\n"
-                                        "*[name] ice [texture] ice.png [friction] 0.2\n\t[col] 0 60 120 [sound] x\n"
-                                        "*[name] rock [texture] rock [depth] 1 [col] 127 127 127\n*[name] none [texture] a.png\n");
+  const std::string file =
+      folder.write("terrains.lst",
+                   "# *[name] old [texture] old.png [col] 1 1 1\n"
+                   "*[name] ice [texture] ice.png [friction] 0.2\n\t[col] 0 60 120 [sound] x\n"
+                   "*[name] rock [texture] rock [depth] 1 [col] 127 127 127\n*[name] none [texture] a.png\n");
   const std::vector<GroundClass> classes = read_ground_classes(file);
   ASSERT_EQ(classes.size(), 2u);
   EXPECT_EQ(classes[0].rgb, (std::array<int, 3>{0, 60, 120}));
   EXPECT_EQ(classes[0].texture_file, folder.path() + "/ice.png");
   EXPECT_EQ(classes[1].texture_file, folder.path() + "/rock.png");
-  EXPECT_THAT(message_of([&] { read_ground_classes(folder.write("none.lst", "nothing")); }), HasSubstr("lists no ground class"));
+  EXPECT_THAT(message_of([&] { read_ground_classes(folder.write("none.lst", "nothing")); }),
+              HasSubstr("lists no ground class"));
 }
 
 TEST(TileImage, SrgbComesBackForEveryByte) {
@@ -175,7 +182,8 @@ TEST(TileImage, ReducingKeepsTheMeanAndStopsAtTheTexelSize) {
   for (const auto& t : tile.texels) mean += t.x / 64;
   const TileImage reduced = reduced_tile(tile, 8, 4);  // 1 m texels → at least 3 m: two halvings
   ASSERT_EQ(reduced.width, 2);
-  EXPECT_NEAR((reduced.texels[0].x + reduced.texels[1].x + reduced.texels[2].x + reduced.texels[3].x) / 4, mean, 1e-5);
+  EXPECT_NEAR((reduced.texels[0].x + reduced.texels[1].x + reduced.texels[2].x + reduced.texels[3].x) / 4,
+              mean, 1e-5);
   EXPECT_EQ(reduced_tile(tile, 8, 1).width, 8);
 }
 
