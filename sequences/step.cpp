@@ -121,25 +121,31 @@ std::int64_t reference_pixels(const Pipeline& pipeline, const std::vector<LayerS
   return pixels;
 }
 
+/// For how many frames the new sprite of a layer will probably be moved by a warp: at most what the policy
+/// expects, and no more than twice as long as the old one lasted, so that a layer that is drawn every frame
+/// is not drawn larger than it needs to be.
+double expected_reuse_frames(const Pipeline& pipeline, const LayerMemory& memory, int frame) {
+  const double by_policy = regulator::expected_reuse_frames(pipeline.settings.regulator,
+                                                            pipeline.settings.extents.expected_reuse_frames);
+  return memory.then ? std::min(by_policy, 2.0 * (frame - memory.frame_rendered)) : by_policy;
+}
+
 /// Notes every layer that is to be rendered: its state and its placement, drawn or not.
 void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameReport& report,
                       std::vector<LayerState>& states) {
-  const double expected_reuse = regulator::expected_reuse_frames(
-      pipeline.settings.regulator, pipeline.settings.extents.expected_reuse_frames);
   std::optional<SceneFrame>
-      soon_frame;  // one frame ahead, for the velocity; evaluated only if some extent can grow
+      soon;  // one frame ahead, for the velocity; evaluated only if some extent can grow
   for (regulator::LayerDecision& decision : report.plan.decisions) {
     if (decision.action != Action::Rerender) continue;
     LayerState& now = states[decision.layer];
+    LayerMemory& memory = state.memory[decision.layer];
     const Layer& layer = pipeline.layers.layers[decision.layer];
-    if (expected_reuse > 0 && !soon_frame)
-      soon_frame = pipeline.scene.at(time_of(pipeline, report.frame + 1));
+    const double reuse = expected_reuse_frames(pipeline, memory, report.frame);
+    if (reuse > 0 && !soon) soon = pipeline.scene.at(time_of(pipeline, report.frame + 1));
     const SpritePlacement placement =
-        expected_reuse > 0
-            ? place_layer(pipeline, now, capture_layer(pipeline, *soon_frame, layer), expected_reuse)
-            : place_layer(pipeline, now, now, 0);
+        place_layer(pipeline, now, reuse > 0 ? capture_layer(pipeline, *soon, layer) : now, reuse);
     decision.cost = cost_of(layer, placement.size_px);
-    state.memory[decision.layer] = {std::move(now), placement, report.frame, false};
+    memory = {std::move(now), placement, report.frame, false};
   }
 }
 
