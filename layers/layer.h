@@ -28,6 +28,10 @@ struct LayerPreferences {
   double max_update_rate =
       1;  ///< renders per frame, (0, 1]: never re-rendered more often, after the first time
   double share_of_expected_motion = 1;  ///< scales the growth of extents by velocity × expected reuse; ≥ 0
+  /// Each part has its own characteristic polyhedron instead of one around the whole layer. For layers whose
+  /// parts lie far apart: one box around them all knows nothing of the parallax between them. Cost: fits in
+  /// proportion to the parts.
+  bool bound_each_part = false;
 };
 
 enum class LayerKind { Geometry };

@@ -288,7 +288,36 @@ Polyhedron bounding_polyhedron(std::span<const dvec3> points, BoundKind kind) {
   return result;
 }
 
+namespace {
+
+/// A part as a layer of its own.
+Layer alone(const Scene& scene, int part) {
+  Layer layer;
+  layer.parts = {part};
+  layer.rigid_node = scene.parts[part].skin < 0 ? scene.parts[part].node : -1;
+  return layer;
+}
+
+LayerBound bound_of_each_part(const Scene& scene, const Layer& layer, BoundKind kind) {
+  LayerBound bound;
+  bound.kind = kind;
+  const int points_per_body = kCorners * static_cast<int>(vertices_per_corner(kind).size());
+  for (const int part : layer.parts) {
+    if (scene.meshes[scene.parts[part].mesh].positions.empty()) continue;
+    const int first = static_cast<int>(bound.bodies.size()) * points_per_body;
+    for (const auto& [a, b, c] : topology(kind))
+      bound.hull.triangles.push_back({a + first, b + first, c + first});
+    bound.bodies.push_back(make_layer_bound(scene, alone(scene, part), kind));
+    bound.bodies.back().part = part;
+  }
+  return bound;
+}
+
+}  // namespace
+
 LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind) {
+  if (layer.preferences.bound_each_part && layer.parts.size() > 1)
+    return bound_of_each_part(scene, layer, kind);
   LayerBound bound;
   bound.kind = kind;
   bound.node = follows_rigid_node(scene, layer) ? layer.rigid_node : -1;
@@ -303,6 +332,15 @@ LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind ki
 }
 
 std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, const LayerBound& bound) {
+  if (!bound.bodies.empty()) {
+    std::vector<dvec3> points;
+    for (const LayerBound& body : bound.bodies) {
+      const auto of_body = world_points(frame, alone(*frame.scene, body.part), body);
+      if (of_body.empty()) return {};  // a part that is not finite: nothing can be said of the layer
+      points.insert(points.end(), of_body.begin(), of_body.end());
+    }
+    return points;
+  }
   if (bound.fixed()) {
     if (bound.node < 0) return bound.hull.points;
     TALISMAN_CHECK_LT(bound.node, static_cast<int>(frame.world_from_node.size()));

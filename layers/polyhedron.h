@@ -57,11 +57,16 @@ struct LayerBound {
   int axes_node = -1;    ///< where the points are recomputed: planes follow its axes; -1: the world's
   bool at_rest = false;  ///< nothing in the layer moves: `hull.points` are world points at every time
   Polyhedron hull;       ///< points are valid when fixed(); the triangles always are
+  /// One bound per part where the layer asks for it (LayerPreferences::bound_each_part). Then `hull` has the
+  /// triangles of all of them, one after the other, and the points are theirs in the same order.
+  std::vector<LayerBound> bodies;
+  int part = -1;         ///< of a body: the part that it bounds
 
   bool fixed() const { return node >= 0 || at_rest; }
 };
 
-/// Fixed in `layer.rigid_node` where the layer has one, fixed in the world where nothing in it moves.
+/// One polyhedron for the whole, or the polyhedra of the parts together: the two ways to group bodies of
+/// [LS97 3.1]. The one is fixed in `layer.rigid_node` where the layer has one, fixed in the world where nothing in it moves.
 /// Otherwise the points are recomputed, along the axes of the lowest node above all its parts and joints, so
 /// that the polyhedron turns with a layer that turns as a whole.
 LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind);

@@ -355,5 +355,40 @@ TEST(LayerBound, EveryVertexIsInsideAtEveryTime) {
   }
 }
 
+TEST(MakeLayerBound, EachPartHasItsOwnPolyhedronWhereTheLayerAsksForIt) {
+  // Ground, cube and moon lie apart and move against each other: one box around them all is blind to that.
+  const layers::Scene scene = tests::moving_scene();
+  const layers::LayerSpec all{"all", {"*"}, layers::OrderGroup::Normal, {}};
+  layers::Layer layer = layers::factor(scene, {&all, 1}).layers.at(0);
+  layer.preferences.bound_each_part = true;
+  for (const layers::BoundKind kind :
+       {layers::BoundKind::Box8, layers::BoundKind::Dop14, layers::BoundKind::Dop26}) {
+    const layers::LayerBound bound = layers::make_layer_bound(scene, layer, kind);
+    ASSERT_EQ(bound.bodies.size(), layer.parts.size());
+    for (const double t : {0.0, 0.7, 3.1}) {
+      const layers::SceneFrame frame = scene.at(t);
+      const auto points = layers::world_points(frame, layer, bound);
+      std::size_t first = 0;
+      for (const LayerBound& body : bound.bodies) {
+        layers::Layer alone = layer;
+        alone.preferences.bound_each_part = false;
+        alone.parts = {body.part};
+        alone.rigid_node = scene.parts[body.part].node;
+        const auto expected =
+            layers::world_points(frame, alone, layers::make_layer_bound(scene, alone, kind));
+        for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(points.at(first + i), expected[i]);
+        first += expected.size();
+      }
+      EXPECT_EQ(points.size(), first);
+    }
+    const std::size_t points_of_kind =
+        layers::world_points(scene.at(0), layer, bound).size() / bound.bodies.size();
+    for (const auto& triangle : bound.hull.triangles)
+      for (const int corner : triangle)
+        EXPECT_LT(corner, static_cast<int>(points_of_kind * bound.bodies.size()));
+    EXPECT_EQ(bound.hull.triangles.size(), bound.bodies.size() * layers::topology(kind).size());
+  }
+}
+
 }  // namespace
 }  // namespace talisman::tests
