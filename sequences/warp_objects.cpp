@@ -214,7 +214,7 @@ layers::Track keyed(int node, layers::Keys<dvec3> translation, Rotations rotatio
 /// Turning by 72° about an axis that is none of the object's own, so that the turn has parts in and out of
 /// the display, while crossing the display and coming nearer.
 WarpMotion rotate_translate() {
-  const dvec3 axis(0.4, 1, 0.5);
+  const dvec3 axis(1, 1, 1);
   return {"rotate-translate",
           "rotating and translating",
           {keyed(kObjectNode,

@@ -13,6 +13,7 @@
 /// merits differ by less than ln(1 + tolerance) are in one cluster.
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sequences/warp_experiment.h"
@@ -38,10 +39,18 @@ Ranking rank(const std::vector<UpdateCurve>& curves, int frames, double toleranc
 /// "trn trni | so soi | aff …", most renders first.
 std::string in_words(const Ranking& ranking);
 
-/// What the paper says, what this run says, and whether they agree.
+enum class Agreement {
+  Yes,
+  OrderOnly,  ///< the order is the paper's, but the curves are closer than the tolerance
+  No,
+};
+std::string_view name(Agreement agreement);
+
+/// What the paper says, what this run says, and whether they agree. Orders are compared within one norm: what
+/// the norm itself changes is a statement of its own.
 struct Statement {
   std::string paper, ours;
-  bool agrees = false;
+  Agreement agreement = Agreement::No;
 };
 
 /// On Fig. 15 (flat teapot): the clusters translation, x/y scale, Shade, affine, perspective in order of
