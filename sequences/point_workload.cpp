@@ -10,7 +10,7 @@ namespace talisman::sequences {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kDisplayPx = 1024;
+constexpr double kDisplayPx = kWorkloadDisplayPx;
 
 dvec2 project(dvec3 camera_point) {
   static const double focal = kDisplayPx / 2 / std::tan(kPi / 8);
@@ -85,7 +85,7 @@ dvec2 Random::in_square(double half_side) {
   return {x, uniform(-half_side, half_side)};
 }
 
-Pairs moving_box(std::uint64_t seed, int points) {
+SpacePairs moving_box_in_space(std::uint64_t seed, int points) {
   Random random(seed * 1000003 + 17);
   const double distance = random.log_uniform(1, 100);
   const dvec3 half{distance * random.uniform(0.02, 0.15), distance * random.uniform(0.02, 0.15),
@@ -95,12 +95,22 @@ Pairs moving_box(std::uint64_t seed, int points) {
   const auto step = random_turn(random, 0.2 * kPi / 180, 3 * kPi / 180);
   const dvec3 move =
       dvec3{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)} * distance;
-  Pairs pairs;
+  SpacePairs pairs;
   for (int i = 0; i < points; ++i) {
     const layers::dvec4 local = pose * layers::dvec4(box_point(i, random) * half, 1);
     const layers::dvec4 turned = step * local;
-    pairs.then_px.push_back(project(centre + dvec3(local)));
-    pairs.now_px.push_back(project(centre + move + dvec3(turned)));
+    pairs.then_m.push_back(centre + dvec3(local));
+    pairs.now_m.push_back(centre + move + dvec3(turned));
+  }
+  return pairs;
+}
+
+Pairs moving_box(std::uint64_t seed, int points) {
+  const SpacePairs space = moving_box_in_space(seed, points);
+  Pairs pairs;
+  for (int i = 0; i < points; ++i) {
+    pairs.then_px.push_back(project(space.then_m[i]));
+    pairs.now_px.push_back(project(space.now_m[i]));
   }
   return pairs;
 }

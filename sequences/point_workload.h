@@ -40,9 +40,18 @@ struct Pairs {
   std::size_t size() const { return then_px.size(); }
 };
 
+/// The same points in space, camera at the origin, looking along -z, y up; metres.
+struct SpacePairs {
+  std::vector<dvec3> then_m, now_m;
+};
+
 /// The workload. Points 0 … 7 are the corners, 8 … 13 the face centres, 14 … 25 the edge centres, further
 /// ones are inside.
 Pairs moving_box(std::uint64_t seed, int points);
+SpacePairs moving_box_in_space(std::uint64_t seed, int points);
+/// The display and the vertical field of view of the workload.
+inline constexpr int kWorkloadDisplayPx = 1024;
+inline constexpr double kWorkloadFovRad = 0.78539816339744831;
 
 /// Points then at random in a square of the given half side about `centre`; now = `map` of them.
 Pairs exact_affine(std::uint64_t seed, int points, const Affine2& map, double half_side_px = 100,

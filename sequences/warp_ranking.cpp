@@ -89,13 +89,14 @@ double Ranking::ratio(Curve curve) const {
   return 1;
 }
 
-Ranking rank(const std::vector<UpdateCurve>& curves, int frames, double tolerance) {
+Ranking rank(const std::vector<UpdateCurve>& curves, double tolerance) {
   const auto aff = std::find_if(curves.begin(), curves.end(), [](auto& c) { return c.curve == Curve::aff; });
   TALISMAN_CHECK(aff != curves.end());
   Ranking ranking;
   std::vector<std::size_t> telling;
   for (std::size_t t = 0; t < aff->renders.size(); ++t)
-    if (aff->renders[t] > 1 && aff->renders[t] < frames) telling.push_back(t);
+    if (std::any_of(curves.begin(), curves.end(), [&](auto& c) { return c.renders[t] != aff->renders[t]; }))
+      telling.push_back(t);
   ranking.thresholds_used = static_cast<int>(telling.size());
   for (const UpdateCurve& curve : curves) {
     double sum = 0;

@@ -34,7 +34,7 @@ struct Ranking {
   int thresholds_used = 0;                         ///< 0: nothing could be compared, all ratios are 1
   double ratio(warp::Curve curve) const;
 };
-Ranking rank(const std::vector<UpdateCurve>& curves, int frames, double tolerance = kAlike);
+Ranking rank(const std::vector<UpdateCurve>& curves, double tolerance = kAlike);
 
 /// "trn trni | so soi | aff …", most renders first.
 std::string in_words(const Ranking& ranking);

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <ostream>
 
+#include "sequences/experiment_options.h"
 #include "sequences/image_io.h"
 #include "sequences/page.h"
 #include "sequences/plot.h"
-#include "sequences/progress.h"
 #include "sequences/warp_objects.h"
 #include "sequences/warp_quality.h"
 #include "sequences/warp_ranking.h"
@@ -46,22 +45,6 @@ struct Experiments {
   std::vector<QualityRun> qualities;
   RateOptions rate;
 };
-
-layers::BoundKind bound_from(const std::string& name) {
-  if (name == "box8") return layers::BoundKind::Box8;
-  if (name == "dop14") return layers::BoundKind::Dop14;
-  if (name == "dop26") return layers::BoundKind::Dop26;
-  throw InputError("--bound '" + name + "', rule: box8, dop14 or dop26");
-}
-
-ProgressKind progress_from(const std::string& name) {
-  constexpr std::array kinds = {std::pair{"auto", ProgressKind::Auto}, std::pair{"bar", ProgressKind::Bar},
-                                std::pair{"plain", ProgressKind::Plain},
-                                std::pair{"none", ProgressKind::None}};
-  for (const auto& [known, kind] : kinds)
-    if (name == known) return kind;
-  throw InputError("--progress '" + name + "', rule: auto, bar, plain or none");
-}
 
 const WarpObject* find(const Experiments& e, const std::string& name) {
   for (const WarpObject& object : e.objects)
@@ -107,7 +90,7 @@ void run_experiments(Experiments& e, ProgressKind progress_kind) {
     const layers::Scene scene = stage(*figure.object, figure.motion);
     figure.curves =
         update_curves(capture_animation(scene, kMotionFrames, kMotionFps, {}, e.bound), e.thresholds);
-    figure.ranking = rank(figure.curves, kMotionFrames);
+    figure.ranking = rank(figure.curves);
     progress.advance();
   }
   e.rate.bound = e.bound;
@@ -218,9 +201,9 @@ void add_first_series(Page& page, const Experiments& e) {
       "Update rate: share of " + std::to_string(kMotionFrames) +
       " frames in which the object had to be drawn again, at 1024 × 1024, without a pixel being drawn. The "
       "order "
-      "is that of the mean logarithm of the update rate relative to aff, over the thresholds at which aff "
-      "renders "
-      "more than once and less than always; neighbours closer than " +
+      "is that of the mean logarithm of the update rate relative to aff, over the thresholds at which not "
+      "all "
+      "curves render equally often; neighbours closer than " +
       fixed(100 * kAlike, 0) +
       " % are one cluster. A curve's name with i minimises the maximum error, one without "
       "the sum of squares. The paper's motions are not published, so what can agree is order and clusters."});
@@ -230,8 +213,8 @@ void add_first_series(Page& page, const Experiments& e) {
       add_main_figure(page, figure, is_studied(studied_objects, *figure.object));
   page.blocks.push_back(Heading{2, "All objects and motions"});
   page.blocks.push_back(
-      Paragraph{"Numbers are update rates relative to aff; a dash: no threshold tells the curves "
-                "apart."});
+      Paragraph{"Numbers are update rates relative to aff; a dash: no threshold tells the "
+                "curves apart."});
   page.blocks.push_back(table_of_motions(e.figures));
   for (const RateFigure& figure : e.figures)
     if (figure.motion.name != warp_motions()[0].name)
@@ -301,15 +284,13 @@ void print_results(const Experiments& e, const WarpsOptions& options, std::ostre
 
 int run_warps(const WarpsOptions& options, std::ostream& out) {
   Experiments e;
-  e.bound = bound_from(options.bound);
-  const ProgressKind progress = progress_from(options.progress);
+  e.bound = bound_kind_from(options.bound);
+  const ProgressKind progress = progress_kind_from(options.progress);
   if (options.object.empty())
     e.objects = load_warp_objects(e.missing);
   else
     e.objects.push_back(load_warp_object(options.object));
-  std::error_code error;
-  std::filesystem::create_directories(options.out, error);
-  if (error) throw OutputError(options.out + ": cannot be created: " + error.message());
+  create_folder(options.out);
   run_experiments(e, progress);
   write_results(e, options);
   print_results(e, options, out);
