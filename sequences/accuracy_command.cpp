@@ -164,7 +164,7 @@ PlotAxis time_axis() { return {"median time per fit, 14 points", "µs", true}; }
 Plot overview_plot(const std::vector<Rung>& rungs) {
   Plot plot{"what accuracy costs: largest error against time",
             time_axis(),
-            {"largest error, mean over the workload", "px", true},
+            {"largest error, mean over the workload", "px", false},
             {}};
   for (const Family family :
        {Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine, Family::Perspective}) {

@@ -93,14 +93,16 @@ std::string curve(const PlotSeries& series, std::size_t index) {
   return text + " title " + quoted(series.name);
 }
 
-/// What is written beside the points, in the colour of the series.
+/// What is written beside the points, in the colour of the series; slanted, so that neighbours do not run
+/// into each other.
 std::string label_words(const PlotSeries& series, const Plot& plot, std::size_t index) {
   std::string text;
   for (std::size_t i = 0; i < series.labels.size(); ++i) {
     const PlotPoint& p = series.points[i];
     if (series.labels[i].empty() || !drawable(p, plot)) continue;
     text += "set label " + quoted(series.labels[i]) + " at " + number(p.x) + "," + number(p.y) +
-            " offset 0.6,0.4 font 'Helvetica,11' textcolor rgb '" + kColors[index % kColors.size()] + "'\n";
+            " offset 0.5,0.5 rotate by 40 font 'Helvetica,11' textcolor rgb '" +
+            kColors[index % kColors.size()] + "'\n";
   }
   return text;
 }
