@@ -56,20 +56,30 @@ HWY_INLINE std::uint16_t mask_of(Lanes32 d, const EdgeVectors& v, std::int32_t e
   return static_cast<std::uint16_t>(mask);
 }
 
-/// Texels [x0, x1] of one row that may be touched, and those that are full, many texels at a time.
-HWY_INLINE void classify_row(Lanes32 d, const EdgeSet& edges, const EdgeVectors& v, const std::int32_t e[3],
-                             int x0, int x1, std::uint32_t& touched, std::uint32_t& full) {
+/// What an edge gains from the first texel of a group of lanes to each of them.
+struct Ramps {
+  Vec edge0, edge1, edge2;
+};
+
+HWY_INLINE Vec ramp(Lanes32 d, std::int32_t a) { return hn::Mul(hn::Iota(d, 0), hn::Set(d, 4 * a)); }
+
+/// Texels [x0, x1] of one row that may be touched, and those that are full, many texels at a time. Lanes
+/// beyond the chunk may wrap around; their bits are cut off at the end.
+HWY_INLINE void classify_row(Lanes32 d, const EdgeSet& edges, const EdgeVectors& v, const Ramps& ramps,
+                             const std::int32_t e[3], int x0, int x1, std::uint32_t& touched,
+                             std::uint32_t& full) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   std::uint64_t some = 0, all = 0;
   for (int x = x0; x <= x1; x += lanes) {
-    Vec outer = hn::Zero(d), inner = hn::Zero(d);
-    for (int k = 0; k < 3; ++k) {
-      // Lanes beyond the chunk may wrap around; their bits are cut off below.
-      const Vec step = hn::Mul(hn::Iota(d, x), hn::Set(d, 4 * edges.a[k]));
-      const Vec at = hn::Add(hn::Set(d, e[k]), step);
-      outer = hn::Or(outer, hn::Add(at, hn::Set(d, v.outer[k])));
-      inner = hn::Or(inner, hn::Add(at, hn::Set(d, v.inner[k])));
-    }
+    const Vec at0 = hn::Add(hn::Set(d, e[0] + 4 * x * edges.a[0]), ramps.edge0);
+    const Vec at1 = hn::Add(hn::Set(d, e[1] + 4 * x * edges.a[1]), ramps.edge1);
+    const Vec at2 = hn::Add(hn::Set(d, e[2] + 4 * x * edges.a[2]), ramps.edge2);
+    const Vec outer =
+        hn::Or(hn::Or(hn::Add(at0, hn::Set(d, v.outer[0])), hn::Add(at1, hn::Set(d, v.outer[1]))),
+               hn::Add(at2, hn::Set(d, v.outer[2])));
+    const Vec inner =
+        hn::Or(hn::Or(hn::Add(at0, hn::Set(d, v.inner[0])), hn::Add(at1, hn::Set(d, v.inner[1]))),
+               hn::Add(at2, hn::Set(d, v.inner[2])));
     some |= static_cast<std::uint64_t>(non_negative_bits(d, outer)) << x;
     all |= static_cast<std::uint64_t>(non_negative_bits(d, inner)) << x;
   }
@@ -82,11 +92,12 @@ void CoverBox(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
   const Lanes32 d;
   EdgeVectors v;
   make_edge_vectors(edges, v);
+  const Ramps ramps{ramp(d, edges.a[0]), ramp(d, edges.a[1]), ramp(d, edges.a[2])};
   for (int y = box.y0; y <= box.y1; ++y) {
     std::int32_t e[3];
     for (int k = 0; k < 3; ++k) e[k] = edges.e[k] + 4 * y * edges.b[k];
     std::uint32_t touched, full;
-    classify_row(d, edges, v, e, box.x0, box.x1, touched, full);
+    classify_row(d, edges, v, ramps, e, box.x0, box.x1, touched, full);
     for (std::uint32_t left = touched & ~full; left != 0; left &= left - 1) {
       const int x = __builtin_ctz(left);
       const std::uint16_t mask =

@@ -51,8 +51,10 @@ class PartAssembly {
     const int count = vertices_.mesh().triangle_count();
     std::vector<Block> blocks((count + kTrianglesPerJob - 1) / kTrianglesPerJob);
     tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
-      const int first = static_cast<int>(b) * kTrianglesPerJob;
-      for (int t = first; t < std::min(count, first + kTrianglesPerJob); ++t) run_triangle(t, blocks[b]);
+      const int first = static_cast<int>(b) * kTrianglesPerJob,
+                end = std::min(count, first + kTrianglesPerJob);
+      blocks[b].triangles.reserve((end - first) / 2 + 1);  // of a closed surface half faces away
+      for (int t = first; t < end; ++t) run_triangle(t, blocks[b]);
     });
     return blocks;
   }

@@ -8,14 +8,8 @@
 namespace talisman::chunker {
 namespace {
 
-/// Half the range of a plane over the 16 samples, and bounds with slack for the rounding of depth_at.
+/// Half the range of a plane over the 16 samples.
 float spread_of(const DepthPlane& p) { return 0.375f * (std::abs(p.dx) + std::abs(p.dy)); }
-
-/// A surface in one sample.
-struct SampleEntry {
-  float depth;
-  const Fragment* surface;
-};
 
 bool in_front(const SampleEntry& a, const SampleEntry& b) {
   return a.depth > b.depth || (a.depth == b.depth && a.surface->order < b.surface->order);
@@ -41,6 +35,8 @@ void insert_sorted(std::vector<SampleEntry>& entries, const SampleEntry& entry) 
 std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b) {
   const float difference = a.z - b.z;
   const float spread = spread_of(a) + spread_of(b);
+  // Beyond the spread, room for the rounding of depth_at: the bounds decide only what sixteen comparisons
+  // would.
   const float slack = spread + 1e-6f * (std::abs(a.z) + std::abs(b.z) + spread);
   if (difference > slack) return kFullMask;
   if (difference < -slack) return 0;
@@ -49,17 +45,13 @@ std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b) {
   return static_cast<std::uint16_t>(mask);
 }
 
-FragmentBuffer::FragmentBuffer() {
-  for (Fragment& base : base_) base = Fragment();
-  first_.fill(-1);
-}
+FragmentBuffer::FragmentBuffer() { first_.fill(-1); }
 
 void FragmentBuffer::clear(const LatticeBox& box, int max_fragments, MergeTolerance merge) {
-  for (int y = box.y0; y <= box.y1; ++y)
-    for (int x = box.x0; x <= box.x1; ++x) {
-      base_[y * kChunkSize + x].mask = 0;
-      first_[y * kChunkSize + x] = -1;
-    }
+  for (int y = box.y0; y <= box.y1; ++y) {
+    covered_[y] = 0;
+    std::fill_n(&first_[y * kChunkSize], kChunkSize, -1);
+  }
   pool_.clear();
   free_ = -1;
   live_ = 0;
@@ -68,10 +60,9 @@ void FragmentBuffer::clear(const LatticeBox& box, int max_fragments, MergeTolera
 }
 
 Added FragmentBuffer::add_to_busy(int texel, const Fragment& fragment) {
-  Fragment& base = base_[texel];
   const bool whole = fragment.mask == kFullMask && fragment.opaque();
-  if (whole && (base.mask == 0 || nearer_samples(fragment.depth, base.depth) == kFullMask)) {
-    base = fragment;
+  if (whole && (!has_base(texel) || nearer_samples(fragment.depth, base_[texel].depth) == kFullMask)) {
+    set_base(texel, fragment);
     if (first_[texel] >= 0) drop_hidden(texel);
     return Added::BecameBase;
   }
@@ -125,9 +116,7 @@ std::int32_t FragmentBuffer::allocate() {
   return place;
 }
 
-Float4 FragmentBuffer::resolve(int texel) const {
-  const bool covered = base_[texel].mask != 0;
-  if (first_[texel] < 0) return covered ? base_[texel].color : splat(0);
+Float4 FragmentBuffer::resolve_busy(int texel) const {
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
     if (!pool_[i].opaque()) return resolve_translucent(texel);
   return resolve_opaque(texel);
@@ -135,7 +124,7 @@ Float4 FragmentBuffer::resolve(int texel) const {
 
 /// Pieces of one surface side by side, nothing behind: no sample is covered twice, so no depth is asked for.
 bool FragmentBuffer::fill_disjoint(int texel, std::array<Float4, kSamples>& samples) const {
-  if (base_[texel].mask != 0) return false;
+  if (has_base(texel)) return false;
   samples.fill(splat(0));
   unsigned covered = 0;
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next) {
@@ -152,9 +141,10 @@ Float4 FragmentBuffer::resolve_opaque(int texel) const {
   if (fill_disjoint(texel, samples)) return mean_of_samples(samples);
   static const Fragment nothing;
   const Fragment& base = base_[texel];
+  const bool covered = has_base(texel);
   std::array<SampleEntry, kSamples> nearest;
   for (int s = 0; s < kSamples; ++s)
-    nearest[s] = base.mask != 0 ? SampleEntry{depth_at(base.depth, s), &base} : SampleEntry{-1, &nothing};
+    nearest[s] = covered ? SampleEntry{depth_at(base.depth, s), &base} : SampleEntry{-1, &nothing};
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
     for (unsigned left = pool_[i].mask; left != 0; left &= left - 1) {
       const int s = __builtin_ctz(left);
@@ -166,20 +156,19 @@ Float4 FragmentBuffer::resolve_opaque(int texel) const {
 }
 
 Float4 FragmentBuffer::resolve_translucent(int texel) const {
-  const Fragment& base = base_[texel];
   std::array<Float4, kSamples> samples;
   // Sorted once by the depth at the centre: the order in each sample is nearly the same.
-  std::vector<SampleEntry> surfaces, entries;
-  if (base.mask != 0) surfaces.push_back({base.depth.z, &base});
+  surfaces_.clear();
+  if (has_base(texel)) surfaces_.push_back({base_[texel].depth.z, &base_[texel]});
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
-    surfaces.push_back({pool_[i].depth.z, &pool_[i]});
-  std::sort(surfaces.begin(), surfaces.end(), in_front);
+    surfaces_.push_back({pool_[i].depth.z, &pool_[i]});
+  std::sort(surfaces_.begin(), surfaces_.end(), in_front);
   for (int s = 0; s < kSamples; ++s) {
-    entries.clear();
-    for (const SampleEntry& surface : surfaces)
-      if (surface.surface->mask >> s & 1)
-        insert_sorted(entries, {depth_at(surface.surface->depth, s), surface.surface});
-    samples[s] = composite_sorted(entries);
+    entries_.clear();
+    for (const SampleEntry& entry : surfaces_)
+      if (entry.surface->mask >> s & 1)
+        insert_sorted(entries_, {depth_at(entry.surface->depth, s), entry.surface});
+    samples[s] = composite_sorted(entries_);
   }
   return mean_of_samples(samples);
 }

@@ -40,6 +40,22 @@ struct MergeTolerance {
 /// Samples where a is strictly nearer than b.
 std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b);
 
+/// Front-to-back accumulation of one sample.
+struct SampleSum {
+  Float4 color{0, 0, 0, 0};
+  float through = 1;
+  void add_behind(Float4 c) {
+    color += c * splat(through);
+    through *= 1 - c[3];
+  }
+};
+
+/// A surface in one sample.
+struct SampleEntry {
+  float depth;
+  const Fragment* surface;
+};
+
 enum class Added { Stored, Merged, BecameBase, Refused };
 
 class FragmentBuffer {
@@ -52,24 +68,33 @@ class FragmentBuffer {
   /// True if the base hides all of `mask` of a surface that comes later.
   bool hides(int texel, std::uint16_t mask, const DepthPlane& depth) const {
     const Fragment& base = base_[texel];
-    return base.mask != 0 && (nearer_samples(depth, base.depth) & mask) == 0;
+    return has_base(texel) && (nearer_samples(depth, base.depth) & mask) == 0;
   }
 
   /// `fragment` comes after all that were added before.
   Added add(int texel, const Fragment& fragment) {
     const bool whole = fragment.mask == kFullMask && fragment.opaque();
     if (!whole || !is_clear(texel)) return add_to_busy(texel, fragment);
-    base_[texel] = fragment;
+    set_base(texel, fragment);
     return Added::BecameBase;
   }
 
   /// Premultiplied colour of a texel: in each sample front to back, then the mean of the 16.
-  Float4 resolve(int texel) const;
-  bool is_clear(int texel) const { return base_[texel].mask == 0 && first_[texel] < 0; }
+  Float4 resolve(int texel) const {
+    if (first_[texel] >= 0) return resolve_busy(texel);
+    return has_base(texel) ? base_[texel].color : splat(0);
+  }
+  bool is_clear(int texel) const { return first_[texel] < 0 && !has_base(texel); }
 
   int live_fragments() const { return live_; }
 
  private:
+  bool has_base(int texel) const { return covered_[texel / kChunkSize] >> (texel % kChunkSize) & 1; }
+  void set_base(int texel, const Fragment& fragment) {
+    base_[texel] = fragment;
+    covered_[texel / kChunkSize] |= 1u << (texel % kChunkSize);
+  }
+  Float4 resolve_busy(int texel) const;
   Added add_to_busy(int texel, const Fragment& fragment);
   bool fill_disjoint(int texel, std::array<Float4, kSamples>& samples) const;
   bool merge(Fragment& last, const Fragment& fragment) const;
@@ -78,22 +103,15 @@ class FragmentBuffer {
   Float4 resolve_opaque(int texel) const;
   Float4 resolve_translucent(int texel) const;
 
-  std::array<Fragment, kChunkSize * kChunkSize> base_;       ///< mask 0: none
+  std::array<std::uint32_t, kChunkSize> covered_{};          ///< bit x of row y: the texel has a base
+  std::array<Fragment, kChunkSize * kChunkSize> base_;       ///< valid where covered
   std::array<std::int32_t, kChunkSize * kChunkSize> first_;  ///< the last one stored; -1: none
   std::vector<Fragment> pool_;
   std::int32_t free_ = -1;
   int live_ = 0, limit_ = 0;
   MergeTolerance merge_;
-};
-
-/// Front-to-back accumulation of one sample.
-struct SampleSum {
-  Float4 color{0, 0, 0, 0};
-  float through = 1;
-  void add_behind(Float4 c) {
-    color += c * splat(through);
-    through *= 1 - c[3];
-  }
+  mutable std::vector<SampleEntry> surfaces_,
+      entries_;  ///< of the texel that is being resolved; kept for their memory
 };
 
 /// Pairwise, so that sixteen equal samples give exactly their value.

@@ -3,10 +3,10 @@
 
 #include <limits>
 
+#include "chunker/encode_row.h"
+
 namespace talisman::chunker {
 namespace {
-
-Texel encoded(Float4 c) { return encode({c[0], c[1], c[2], c[3]}); }
 
 bool is_nothing(Float4 c) { return c[3] == 0 && c[0] == 0 && c[1] == 0 && c[2] == 0; }
 
@@ -30,10 +30,11 @@ void ChunkRenderer::draw_box(std::span<const std::uint32_t> triangles, const Lat
     draw_quarters(triangles, box, out);
     return;
   }
-  for (int y = box.y0; y <= box.y1; ++y)
-    for (int x = box.x0; x <= box.x1; ++x)
-      if (!buffer_.is_clear(y * kChunkSize + x))
-        out.texels[y * kChunkSize + x] = encoded(buffer_.resolve(y * kChunkSize + x));
+  std::array<Float4, kChunkSize> row;
+  for (int y = box.y0; y <= box.y1; ++y) {
+    for (int x = box.x0; x <= box.x1; ++x) row[x] = buffer_.resolve(y * kChunkSize + x);
+    encode_row(&row[box.x0], box.x1 - box.x0 + 1, &out.texels[y * kChunkSize + box.x0]);
+  }
 }
 
 void ChunkRenderer::draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box,

@@ -10,7 +10,9 @@
 namespace talisman::chunker::reference {
 
 /// Per-pixel loop over all triangles; every sub-pixel sample keeps its own sorted list of surfaces (no
-/// fragments, no merging).
+/// fragments, no merging). The fast path equals it byte for byte when its merge tolerances are 0, and within
+/// one code value otherwise. Shared with it are functions of one vertex or one point (transform, snap, shade,
+/// encode).
 Sprite render(const PreparedScene& prepared, const layers::SceneFrame& frame, std::span<const int> parts,
               layers::ivec2 display_px, const layers::SpritePlacement& placement,
               const RenderOptions& options = {});

@@ -11,6 +11,12 @@
 /// last one stored for its pixel when depth and colour are within tolerance; when fragment memory overflows
 /// the chunk is subdivided and its pieces are rendered independently, with the same result.
 ///
+/// Conventions: depth is 1/w, so there is no far plane, and at equal depth the triangle that comes first in
+/// the order of `parts` and of indices is seen. Nodes of negative scale and mirroring placements keep fronts
+/// fronts. Triangles with a vertex that is not finite are skipped. Shading is that of chunker/shade.h:
+/// Lambert and Blinn-Phong, lights without falloff, attributes at the centroid of the covered samples, one
+/// colour per fragment.
+///
 /// The result is the same, byte for byte, for any number of threads, any SIMD width and any order of chunks.
 
 #include <cstdint>
@@ -27,27 +33,35 @@ namespace talisman::chunker {
 enum class Shading { Flat, Gouraud, Phong };
 
 struct RenderOptions {
-  Shading shading = Shading::Phong;  ///< Gouraud shades vertices, Phong every covered pixel
-  bool mipmaps = true;               ///< without them minified textures alias
-  int max_fragments_per_chunk =
-      4096;  ///< ≥ 16; memory of a chunk's fragment buffer [A §1: size unpublished, assumed]
-  float merge_depth = 1e-4f;       ///< tolerance of the merge rule, relative depth; ≥ 0
-  float merge_color = 1.0f / 512;  ///< tolerance of the merge rule, linear colour; ≥ 0
+  /// Flat shades triangles, Gouraud vertices, Phong every covered pixel: the cost of lights goes with their
+  /// number.
+  Shading shading = Shading::Phong;
+  bool mipmaps = true;  ///< trilinear; without them minified textures alias, and cost half as much
+  /// ≥ 16; a chunk that needs more is drawn again in quarters. More memory (48 bytes each), fewer
+  /// repetitions; the bytes do not change [A §1: size unpublished, assumed].
+  int max_fragments_per_chunk = 4096;
+  /// Tolerances of the merge rule: relative depth anywhere in the pixel, linear colour per channel; ≥ 0.
+  /// Larger ones save fragments and cost accuracy, with these defaults at most one code value. Both 0:
+  /// nothing merges, and the sprite equals chunker::reference::render byte for byte.
+  float merge_depth = 1e-4f;
+  float merge_color = 1.0f / 512;
 };
 
-/// Counted while drawing; sums of chunks equal the layer's totals.
+/// Counted while drawing, independent of threads and order. All work counts, also that of a chunk that is
+/// given up because its fragments overflow and drawn again in quarters.
 struct RenderCounters {
-  std::int64_t polygons_in = 0;      ///< triangles of the layer
-  std::int64_t polygons_drawn = 0;   ///< after clipping and culling
-  std::int64_t polygon_chunks = 0;   ///< triangle–chunk pairs
-  std::int64_t chunks_rendered = 0;  ///< chunks in which something was drawn
-  std::int64_t chunks_clear = 0;     ///< chunks in which nothing was drawn
-  std::int64_t pixels_filled = 0;    ///< pixel writes, depth test passed or fragment stored
-  std::int64_t pixels_shaded = 0;
-  std::int64_t fragments = 0;  ///< stored
-  std::int64_t fragments_merged = 0;
-  std::int64_t chunk_subdivisions = 0;
-  std::int64_t texture_samples = 0;
+  std::int64_t polygons_in = 0;  ///< triangles of the layer
+  std::int64_t polygons_drawn =
+      0;  ///< after clipping and culling, with at least one sample in their bounding box
+  std::int64_t polygon_chunks = 0;      ///< triangle–chunk pairs; quarters are not counted again
+  std::int64_t chunks_rendered = 0;     ///< chunks in which something was drawn
+  std::int64_t chunks_clear = 0;        ///< chunks in which nothing was drawn
+  std::int64_t pixels_filled = 0;       ///< pixel writes: straight to the pixel, stored or merged
+  std::int64_t pixels_shaded = 0;       ///< colours computed, for whole pixels and for parts of them
+  std::int64_t fragments = 0;           ///< stored
+  std::int64_t fragments_merged = 0;    ///< into one that was stored before
+  std::int64_t chunk_subdivisions = 0;  ///< chunks, or quarters, that were cut into four
+  std::int64_t texture_samples = 0;     ///< filtered look-ups, trilinear or bilinear
   RenderCounters& operator+=(const RenderCounters& o);
   bool operator==(const RenderCounters&) const = default;
 };

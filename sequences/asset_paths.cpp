@@ -24,13 +24,14 @@ std::string assets_folder() {
   return chosen && *chosen ? chosen : repository_root() + "/assets";
 }
 
-/// "gl-117-data" of "gl-117-data:/usr/share/…"; empty when the path names no package. Debian Policy 5.6.7: lower case
-/// letters, digits and + - . — so a package never leads out of the assets folder.
+/// "gl-117-data" of "gl-117-data:/usr/share/…"; empty when the path names no package. Debian Policy 5.6.7:
+/// lower case letters, digits and + - . — so a package never leads out of the assets folder.
 std::string package_of(const std::string& path) {
   const std::size_t colon = path.find(":/");
   if (colon == std::string::npos || colon < 2) return {};
   const std::string package = path.substr(0, colon);
-  const bool well_formed = package.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789+-.") == std::string::npos;
+  const bool well_formed =
+      package.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789+-.") == std::string::npos;
   return well_formed && package[0] != '.' ? package : std::string();
 }
 
@@ -61,15 +62,18 @@ std::string resolve_asset(const std::string& path, const std::string& sequence_f
     const fs::path found = folder.string() + path.substr(package.size() + 1);
     if (fs::is_regular_file(found, error)) return found.string();
     if (fs::is_directory(folder, error))
-      throw InputError("'" + path + "' is not in package " + package + ", rule: a file of the package", sequence_file, line);
-    throw InputError("'" + path + "' is not there, rule: content is fetched first, by sequences/fetch-assets " +
+      throw InputError("'" + path + "' is not in package " + package + ", rule: a file of the package",
+                       sequence_file, line);
+    throw InputError("'" + path +
+                         "' is not there, rule: content is fetched first, by sequences/fetch-assets " +
                          fetch_name(sequence_file),
                      sequence_file, line);
   }
-  const fs::path found = fs::path(path).is_absolute() ? fs::path(path) : fs::path(sequence_file).parent_path() / path;
+  const fs::path found =
+      fs::path(path).is_absolute() ? fs::path(path) : fs::path(sequence_file).parent_path() / path;
   if (!fs::is_regular_file(found, error))
-    throw InputError("'" + path + "' is not there, rule: a file, as package:/path or relative to this file", sequence_file,
-                     line);
+    throw InputError("'" + path + "' is not there, rule: a file, as package:/path or relative to this file",
+                     sequence_file, line);
   return found.string();
 }
 

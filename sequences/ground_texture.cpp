@@ -13,9 +13,9 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr double kSlowScale = 7.3;   // the copy of a tile that varies the brightness is so many times larger; not a whole
-                                     // number, so that the two never fall into step
-constexpr float kSlowShare = 0.5f;   // how much of that variation is used
+constexpr double kSlowScale = 7.3;  // the copy of a tile that varies the brightness is so many times larger;
+                                    // not a whole number, so that the two never fall into step
+constexpr float kSlowShare = 0.5f;  // how much of that variation is used
 
 float mean_brightness(const TileImage& tile) {
   double sum = 0;
@@ -29,8 +29,9 @@ std::size_t nearest_class(const std::vector<GroundClass>& classes, const std::ui
     for (int k = 0; k < 3; ++k) sum += (c.rgb[k] - rgb[k]) * (c.rgb[k] - rgb[k]);
     return sum;
   };
-  const auto nearest = std::min_element(classes.begin(), classes.end(),
-                                        [&](const auto& a, const auto& b) { return distance(a) < distance(b); });
+  const auto nearest = std::min_element(classes.begin(), classes.end(), [&](const auto& a, const auto& b) {
+    return distance(a) < distance(b);
+  });
   return static_cast<std::size_t>(nearest - classes.begin());
 }
 

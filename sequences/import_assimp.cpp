@@ -31,7 +31,8 @@ layers::Transform decomposed(const layers::dmat4& m, bool& sheared) {
   t.translation = layers::dvec3(m[3]);
   layers::dvec3 axis[3] = {layers::dvec3(m[0]), layers::dvec3(m[1]), layers::dvec3(m[2])};
   t.scale = {glm::length(axis[0]), glm::length(axis[1]), glm::length(axis[2])};
-  if (!(t.scale.x > 0 && t.scale.y > 0 && t.scale.z > 0)) {  // flattened: what is left has no rotation to speak of
+  if (!(t.scale.x > 0 && t.scale.y > 0 &&
+        t.scale.z > 0)) {  // flattened: what is left has no rotation to speak of
     sheared = true;
     return t;
   }
@@ -99,7 +100,8 @@ layers::Mesh import_mesh(const aiMesh& from) {
   if (from.HasNormals())
     for (unsigned i = 0; i < n; ++i) mesh.normals.push_back(unit_or_up(from.mNormals[i]));
   if (from.HasTextureCoords(0))
-    for (unsigned i = 0; i < n; ++i) mesh.uvs.push_back({from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y});
+    for (unsigned i = 0; i < n; ++i)
+      mesh.uvs.push_back({from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y});
   if (from.HasVertexColors(0))
     for (unsigned i = 0; i < n; ++i) {
       const aiColor4D& c = from.mColors[0][i];
@@ -114,7 +116,8 @@ layers::Mesh import_mesh(const aiMesh& from) {
 /// The four largest influences of each vertex.
 class Influences {
  public:
-  explicit Influences(std::size_t vertices) : joints_(vertices, glm::uvec4(0)), weights_(vertices, layers::vec4(0)) {}
+  explicit Influences(std::size_t vertices)
+      : joints_(vertices, glm::uvec4(0)), weights_(vertices, layers::vec4(0)) {}
   void add(unsigned vertex, unsigned joint, float weight) {
     if (vertex >= weights_.size() || !(weight > 0) || !std::isfinite(weight)) return;
     layers::vec4& w = weights_[vertex];
@@ -158,11 +161,13 @@ void import_skin(Import& import, int mesh_index) {
     const auto joint = bone ? import.node_named.find(text(bone->mName)) : import.node_named.end();
     if (joint == import.node_named.end()) continue;
     for (unsigned w = 0; w < bone->mNumWeights; ++w)
-      influences.add(bone->mWeights[w].mVertexId, static_cast<unsigned>(skin.joints.size()), bone->mWeights[w].mWeight);
+      influences.add(bone->mWeights[w].mVertexId, static_cast<unsigned>(skin.joints.size()),
+                     bone->mWeights[w].mWeight);
     skin.joints.push_back(joint->second);
     skin.joint_from_mesh.push_back(to_matrix(bone->mOffsetMatrix));
   }
-  if (skin.joints.empty()) return import.warn("mesh '" + skin.name + "' has bones without nodes; it stays rigid");
+  if (skin.joints.empty())
+    return import.warn("mesh '" + skin.name + "' has bones without nodes; it stays rigid");
   influences.finish(static_cast<unsigned>(skin.joints.size()), mesh);
   skin.joint_from_mesh.push_back(layers::dmat4(1));
   for (layers::Part& part : scene.parts) {
@@ -182,7 +187,8 @@ void import_meshes(Import& import) {
 }
 
 void drop_empty_parts(layers::Scene& scene) {
-  std::erase_if(scene.parts, [&](const layers::Part& part) { return scene.meshes[part.mesh].indices.empty(); });
+  std::erase_if(scene.parts,
+                [&](const layers::Part& part) { return scene.meshes[part.mesh].indices.empty(); });
 }
 
 // --- The file ---
@@ -192,9 +198,10 @@ void set_options(Assimp::Importer& importer) {
   importer.SetPropertyInteger(AI_CONFIG_PP_LBW_MAX_WEIGHTS, 4);
 }
 
-constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_GenSmoothNormals |
-                            aiProcess_FlipUVs | aiProcess_SortByPType | aiProcess_ValidateDataStructure |
-                            aiProcess_LimitBoneWeights | aiProcess_GenUVCoords | aiProcess_TransformUVCoords;
+constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_JoinIdenticalVertices |
+                            aiProcess_GenSmoothNormals | aiProcess_FlipUVs | aiProcess_SortByPType |
+                            aiProcess_ValidateDataStructure | aiProcess_LimitBoneWeights |
+                            aiProcess_GenUVCoords | aiProcess_TransformUVCoords;
 
 bool is_gltf(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The inside of talisman_import: what assimp makes of a file becomes an ImportedModel. Only this program links assimp.
+/// The inside of talisman_import: what assimp makes of a file becomes an ImportedModel. Only this program
+/// links assimp.
 
 #include <map>
 #include <set>
@@ -22,22 +23,24 @@ struct Import {
       : from(scene), path(std::move(file)), linear_colors(linear) {}
   const aiScene& from;
   std::string path;
-  bool linear_colors;                                ///< glTF; otherwise colours are sRGB
+  bool linear_colors;  ///< glTF; otherwise colours are sRGB
   ImportedModel model;
   std::map<const aiNode*, int> node_of;
-  std::map<std::string, int> node_named;             ///< the first of that name
-  std::map<std::string, int> texture_of;             ///< texture reference (see material_texture) → index or -1
+  std::map<std::string, int> node_named;  ///< the first of that name
+  std::map<std::string, int> texture_of;  ///< texture reference (see material_texture) → index or -1
 
   void warn(const std::string& text) { model.warnings.push_back(text); }
 };
 
-void import_materials(Import& import);               ///< import_materials.cpp
-void import_motion(Import& import);                  ///< import_motion.cpp: tracks of the first animation
-void import_lights(Import& import);                  ///< import_motion.cpp
-void import_cameras(Import& import);                 ///< import_motion.cpp
+void import_materials(Import& import);  ///< import_materials.cpp
+void import_motion(Import& import);     ///< import_motion.cpp: tracks of the first animation
+void import_lights(Import& import);     ///< import_motion.cpp
+void import_cameras(Import& import);    ///< import_motion.cpp
 
-/// The file that a model means by a texture's name: as written, relative to the model, by its base name beside the model and in
-/// ../textures and ./textures, in any letter case, and with the stem cut to 8 characters. Empty if there is none.
+/// The file that a model means by a texture's name: as written, relative to the model, by its base name
+/// beside the model and in
+/// ../textures and ./textures, in any letter case, with the stem cut to 8
+/// characters, and at last with another extension. Empty if there is none.
 std::string find_texture(const std::string& model_path, const std::string& written);
 
 inline layers::dvec3 to_vector(const aiVector3D& v) { return {v.x, v.y, v.z}; }

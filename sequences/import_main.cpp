@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// talisman_import PATH SECONDS MEGABYTES: reads a model with assimp and writes it to stdout as a scene stream. Started by
-// import_model; limits itself first, so that nothing in the file can take more than that.
+// talisman_import PATH SECONDS MEGABYTES: reads a model with assimp and writes it to stdout as a scene
+// stream. Started by import_model; limits itself first, so that nothing in the file can take more than that.
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
 #include <new>
 
-#include <signal.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -25,10 +25,12 @@ void limit(int resource, rlim_t soft) {
 }
 
 void limit_ourselves(int seconds, long megabytes) {
+  std::signal(SIGINT, SIG_IGN);  // Ctrl-C is for the tool; it ends its reader when it ends itself
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   limit(RLIMIT_CPU, static_cast<rlim_t>(seconds));
   limit(RLIMIT_CORE, 0);
-#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)  // they reserve terabytes of address space
+#if !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)  // they reserve terabytes of address space
   limit(RLIMIT_AS, static_cast<rlim_t>(megabytes) << 20);
 #else
   (void)megabytes;

@@ -16,30 +16,32 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kMaxShininess = 1024;
-constexpr float kDielectric = 0.04f;      // reflectance of common non-metals at normal incidence
-constexpr std::size_t kShortStem = 8;     // DOS names, as 3DS files write them
+constexpr float kDielectric = 0.04f;   // reflectance of common non-metals at normal incidence
+constexpr std::size_t kShortStem = 8;  // DOS names, as 3DS files write them
 
 std::string lower(std::string s) {
   for (char& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return s;
 }
 
-/// The file in `folder` whose name is `name` but for letter case; else one whose stem is cut to the same 8 characters.
+/// The file in `folder` whose name is `name` but for letter case; else one whose stem is cut to the same 8
+/// characters, if possible with the same extension (gl-117 writes .RGB and ships .tga).
 std::string find_in(const fs::path& folder, const std::string& name) {
-  const std::string wanted = lower(name), wanted_stem = lower(fs::path(name).stem().string()).substr(0, kShortStem);
+  const std::string wanted = lower(name),
+                    wanted_stem = lower(fs::path(name).stem().string()).substr(0, kShortStem);
   const std::string wanted_extension = lower(fs::path(name).extension().string());
-  std::vector<std::string> shortened;
+  std::set<std::pair<bool, std::string>> similar;
   std::error_code error;
   for (const auto& entry : fs::directory_iterator(folder, error)) {
     if (!entry.is_regular_file(error)) continue;
     const std::string found = lower(entry.path().filename().string());
     if (found == wanted) return entry.path().string();
-    const bool same_stem = lower(entry.path().stem().string()).substr(0, kShortStem) == wanted_stem;
-    if (same_stem && !wanted_stem.empty() && lower(entry.path().extension().string()) == wanted_extension)
-      shortened.push_back(entry.path().string());
+    if (wanted_stem.empty() || lower(entry.path().stem().string()).substr(0, kShortStem) != wanted_stem)
+      continue;
+    const bool other = lower(entry.path().extension().string()) != wanted_extension;
+    similar.emplace(other, entry.path().string());  // sorted: the order in a folder is nobody's choice
   }
-  std::sort(shortened.begin(), shortened.end());  // the order in a folder is nobody's choice
-  return shortened.empty() ? std::string() : shortened.front();
+  return similar.empty() ? std::string() : similar.begin()->second;
 }
 
 layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
@@ -142,7 +144,8 @@ layers::Material import_material(Import& import, const aiMaterial& from) {
     import_pbr_gloss(from, to);
   else
     import_phong_gloss(import, from, to);
-  if (to.shininess < 1) to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
+  if (to.shininess < 1)
+    to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
   return to;
 }
 

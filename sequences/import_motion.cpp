@@ -10,10 +10,11 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr double kDefaultTicksPerSecond = 25;   // assimp's word for "the file does not say"
+constexpr double kDefaultTicksPerSecond = 25;  // assimp's word for "the file does not say"
 constexpr double kDefaultFov_rad = 0.9;
 
-/// Keys in seconds with strictly increasing times; of equal times the first is kept. Keys that are no numbers are left out.
+/// Keys in seconds with strictly increasing times; of equal times the first is kept. Keys that are no numbers
+/// are left out.
 template <typename Value, typename Key, typename Convert>
 layers::Keys<Value> to_keys(const Key* keys, unsigned count, double seconds_per_tick, Convert convert) {
   layers::Keys<Value> result;
@@ -42,8 +43,10 @@ void import_channel(Import& import, const aiNodeAnim& channel, double seconds_pe
   track.loop = true;
   track.translation =
       to_keys<layers::dvec3>(channel.mPositionKeys, channel.mNumPositionKeys, seconds_per_tick, to_vector);
-  track.rotation = to_keys<glm::dquat>(channel.mRotationKeys, channel.mNumRotationKeys, seconds_per_tick, to_unit);
-  track.scale = to_keys<layers::dvec3>(channel.mScalingKeys, channel.mNumScalingKeys, seconds_per_tick, to_vector);
+  track.rotation =
+      to_keys<glm::dquat>(channel.mRotationKeys, channel.mNumRotationKeys, seconds_per_tick, to_unit);
+  track.scale =
+      to_keys<layers::dvec3>(channel.mScalingKeys, channel.mNumScalingKeys, seconds_per_tick, to_vector);
   import.model.scene.tracks.push_back({node->second, std::move(track)});
 }
 
@@ -52,7 +55,9 @@ int node_or_none(const Import& import, const aiString& name) {
   return node == import.node_named.end() ? -1 : node->second;
 }
 
-bool is_finite(const layers::dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite(const layers::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// The light, or nothing when its kind cannot be kept.
 bool import_light(Import& import, const aiLight& from, layers::Light& to) {
@@ -62,16 +67,25 @@ bool import_light(Import& import, const aiLight& from, layers::Light& to) {
   to.direction = to_vector(from.mDirection);
   to.color = {from.mColorDiffuse.r, from.mColorDiffuse.g, from.mColorDiffuse.b};
   switch (from.mType) {
-    case aiLightSource_DIRECTIONAL: to.kind = layers::Light::Kind::Directional; break;
-    case aiLightSource_SPOT: import.warn("light '" + to.name + "' is a spot; it shines as a point"); [[fallthrough]];
-    case aiLightSource_POINT: to.kind = layers::Light::Kind::Point; break;
+    case aiLightSource_DIRECTIONAL:
+      to.kind = layers::Light::Kind::Directional;
+      break;
+    case aiLightSource_SPOT:
+      import.warn("light '" + to.name + "' is a spot; it shines as a point");
+      [[fallthrough]];
+    case aiLightSource_POINT:
+      to.kind = layers::Light::Kind::Point;
+      break;
     case aiLightSource_AMBIENT:
       to.kind = layers::Light::Kind::Ambient;
       to.color = {from.mColorAmbient.r, from.mColorAmbient.g, from.mColorAmbient.b};
       break;
-    default: import.warn("light '" + to.name + "' is of a kind that is not simulated"); return false;
+    default:
+      import.warn("light '" + to.name + "' is of a kind that is not simulated");
+      return false;
   }
-  if (to.kind == layers::Light::Kind::Directional && !(glm::length(to.direction) > 0)) to.direction = {0, 0, -1};
+  if (to.kind == layers::Light::Kind::Directional && !(glm::length(to.direction) > 0))
+    to.direction = {0, 0, -1};
   for (int k = 0; k < 3; ++k)
     if (!(to.color[k] >= 0 && std::isfinite(to.color[k]))) to.color[k] = 0;
   return is_finite(to.position) && is_finite(to.direction);
@@ -115,7 +129,8 @@ void import_lights(Import& import) {
   auto& lights = import.model.scene.lights;
   for (unsigned i = 0; i < import.from.mNumLights; ++i) {
     layers::Light light;
-    if (import.from.mLights[i] && import_light(import, *import.from.mLights[i], light)) lights.push_back(light);
+    if (import.from.mLights[i] && import_light(import, *import.from.mLights[i], light))
+      lights.push_back(light);
   }
   float brightest = 1;
   for (const layers::Light& light : lights)

@@ -65,8 +65,6 @@ int run_sequence(const CommandLine& line, bool plan_only) {
   if (line.threads > 0)
     threads = std::make_unique<oneapi::tbb::global_control>(
         oneapi::tbb::global_control::max_allowed_parallelism, line.threads);
-  std::signal(SIGINT, on_stop_signal);
-  std::signal(SIGTERM, on_stop_signal);
   const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop_requested);
   if (!outcome.complete) {
     std::fprintf(stderr, "error: stopped after %zu frames; the same command with --resume continues\n",
@@ -156,6 +154,8 @@ int fail(const std::exception& error, int code) {
 
 int main(int argc, char** argv) try {
   std::signal(SIGPIPE, SIG_IGN);
+  std::signal(SIGINT, on_stop_signal);
+  std::signal(SIGTERM, on_stop_signal);
   Commands commands;
   try {
     commands.app.parse(argc, argv);

@@ -72,7 +72,8 @@ class Child {
     argv.push_back(nullptr);
     const int error = ::posix_spawn(&pid_, argv[0], &actions, nullptr, argv.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) throw OutputError(arguments[0] + ": " + std::strerror(error) + "; it is built with the tool");
+    if (error != 0)
+      throw OutputError(arguments[0] + ": " + std::strerror(error) + "; it is built with the tool");
     out.write.close();
     errors.write.close();
   }
@@ -159,7 +160,8 @@ std::string last_error(const std::string& output) {
 
 /// What went wrong with the child, in words; empty when nothing did.
 std::string failure(const Outcome& outcome, const ImportLimits& limits) {
-  const std::string too_slow = "takes longer to read than the limit of " + std::to_string(limits.seconds) + " s";
+  const std::string too_slow =
+      "takes longer to read than the limit of " + std::to_string(limits.seconds) + " s";
   if (outcome.timed_out) return too_slow;
   if (outcome.too_long) return "is larger than the limit of " + std::to_string(limits.megabytes) + " MB";
   if (WIFSIGNALED(outcome.status)) {
@@ -169,7 +171,8 @@ std::string failure(const Outcome& outcome, const ImportLimits& limits) {
   }
   if (WEXITSTATUS(outcome.status) == kSuccess) return {};
   const std::string why = last_error(outcome.errors);
-  return why.empty() ? "its reader failed with exit code " + std::to_string(WEXITSTATUS(outcome.status)) : why;
+  return why.empty() ? "its reader failed with exit code " + std::to_string(WEXITSTATUS(outcome.status))
+                     : why;
 }
 
 }  // namespace

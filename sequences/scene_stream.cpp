@@ -9,7 +9,8 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr std::uint32_t kMagic = 0x4d534c54;  // "TLSM"; both ends run on one machine, so bytes are in its order
+constexpr std::uint32_t kMagic =
+    0x4d534c54;  // "TLSM"; both ends run on one machine, so bytes are in its order
 constexpr std::uint32_t kVersion = 1;
 
 [[noreturn]] void fail(const std::string& what) { throw InputError("scene stream: " + what); }
@@ -105,7 +106,8 @@ class Reader {
     std::uint64_t n = 0;
     value(n);
     if (n > rest_.size() / item_bytes)
-      fail("length " + std::to_string(n) + ", but only " + std::to_string(rest_.size()) + " bytes follow" + place());
+      fail("length " + std::to_string(n) + ", but only " + std::to_string(rest_.size()) + " bytes follow" +
+           place());
     return static_cast<std::size_t>(n);
   }
   void raw(void* to, std::size_t size) {
@@ -293,8 +295,7 @@ T from_bytes(std::span<const std::uint8_t> bytes) {
   reader.value(magic);
   if (magic != kMagic) fail("does not begin with its magic number");
   reader.value(version);
-  if (version != kVersion)
-    fail("version " + std::to_string(version) + ", rule: " + std::to_string(kVersion));
+  if (version != kVersion) fail("version " + std::to_string(version) + ", rule: " + std::to_string(kVersion));
   T content;
   fields(reader, content);
   reader.expect_end();

@@ -21,15 +21,18 @@ layers::dvec3 direction(double azimuth_deg, double elevation_deg) {
   return {std::sin(a) * std::cos(e), std::sin(e), -std::cos(a) * std::cos(e)};
 }
 
-/// The place of the patch at s, t in 0 … 1 (s from left to right, t from top to bottom), seen from the centre.
+/// The place of the patch at s, t in 0 … 1 (s from left to right, t from top to bottom), seen from the
+/// centre.
 layers::dvec3 patch_point(const SkyContent& sky, double s, double t) {
   const double azimuth = sky.azimuth_deg.x + s * (sky.azimuth_deg.y - sky.azimuth_deg.x);
   const double elevation = sky.elevation_deg.y + t * (sky.elevation_deg.x - sky.elevation_deg.y);
   if (sky.kind == SkyContent::Kind::Dome) return sky.radius_m * direction(azimuth, elevation);
-  const double middle = (sky.azimuth_deg.x + sky.azimuth_deg.y) / 2, half = (sky.azimuth_deg.y - sky.azimuth_deg.x) / 2;
+  const double middle = (sky.azimuth_deg.x + sky.azimuth_deg.y) / 2,
+               half = (sky.azimuth_deg.y - sky.azimuth_deg.x) / 2;
   const layers::dvec3 ahead = direction(middle, 0), right = direction(middle + 90, 0);
   const double across = (2 * s - 1) * std::tan(glm::radians(half));
-  const double top = std::tan(glm::radians(sky.elevation_deg.y)), bottom = std::tan(glm::radians(sky.elevation_deg.x));
+  const double top = std::tan(glm::radians(sky.elevation_deg.y)),
+               bottom = std::tan(glm::radians(sky.elevation_deg.x));
   return sky.radius_m * (ahead + across * right + layers::dvec3{0, top + t * (bottom - top), 0});
 }
 
@@ -46,7 +49,8 @@ layers::Mesh patch_mesh(const SkyContent& sky) {
       const layers::dvec3 p = patch_point(sky, s, t);
       mesh.positions.push_back(layers::vec3(p));
       mesh.normals.push_back(layers::vec3(-glm::normalize(p)));
-      mesh.uvs.push_back({static_cast<float>(inset(s, sky.texels.x)), static_cast<float>(inset(t, sky.texels.y))});
+      mesh.uvs.push_back(
+          {static_cast<float>(inset(s, sky.texels.x)), static_cast<float>(inset(t, sky.texels.y))});
     }
   const auto stride = static_cast<std::uint32_t>(columns + 1);
   for (std::uint32_t j = 0; j < static_cast<std::uint32_t>(rows); ++j)
@@ -57,7 +61,8 @@ layers::Mesh patch_mesh(const SkyContent& sky) {
   return mesh;
 }
 
-/// Cover of the clouds, 0 … 1, on a plane over the centre; thinned out towards the horizon, where the plane is far.
+/// Cover of the clouds, 0 … 1, on a plane over the centre; thinned out towards the horizon, where the plane
+/// is far.
 class Clouds {
  public:
   explicit Clouds(const SkyContent& sky) : sky_(sky) {
@@ -78,7 +83,8 @@ class Clouds {
 layers::vec3 sky_color(const SkyContent& sky, const Clouds& clouds, const layers::dvec3& toward) {
   const double top = std::sin(glm::radians(std::max(1.0, sky.elevation_deg.y)));
   const double up = std::clamp(toward.y / top, 0.0, 1.0);
-  const float share = static_cast<float>(std::sqrt(up));  // the haze is a band: most of the change is low in the sky
+  const float share =
+      static_cast<float>(std::sqrt(up));  // the haze is a band: most of the change is low in the sky
   const layers::vec3 clear = sky.horizon + share * (sky.zenith - sky.horizon);
   return clear + clouds(toward) * (layers::vec3(0.92f) - clear);
 }
@@ -91,7 +97,8 @@ layers::Texture bake_sky(const SkyContent& sky) {
   texture.height = sky.texels.y;
   for (int y = 0; y < texture.height; ++y)
     for (int x = 0; x < texture.width; ++x) {
-      const double s = static_cast<double>(x) / (texture.width - 1), t = static_cast<double>(y) / (texture.height - 1);
+      const double s = static_cast<double>(x) / (texture.width - 1),
+                   t = static_cast<double>(y) / (texture.height - 1);
       const layers::vec3 color = sky_color(sky, clouds, glm::normalize(patch_point(sky, s, t)));
       for (int k = 0; k < 3; ++k) texture.rgba.push_back(srgb_byte(color[k]));
       texture.rgba.push_back(255);
@@ -108,8 +115,9 @@ void add_sky(layers::Scene& scene, const SkyContent& sky) {
   material.texture = static_cast<int>(scene.textures.size());
   material.two_sided = true;
   material.unlit = true;
-  scene.parts.push_back({sky.name, static_cast<int>(scene.nodes.size()), static_cast<int>(scene.meshes.size()),
-                         static_cast<int>(scene.materials.size()), -1});
+  scene.parts.push_back({sky.name, static_cast<int>(scene.nodes.size()),
+                         static_cast<int>(scene.meshes.size()), static_cast<int>(scene.materials.size()),
+                         -1});
   layers::Node node;
   node.name = sky.name;
   node.local.translation = sky.center;

@@ -69,7 +69,9 @@ struct Rows {
 };
 
 Rows rows_of(const layers::Mesh& mesh, const layers::HeightField& field) {
-  const auto row = [&](const layers::vec2& uv) { return static_cast<int>(std::lround(uv.y * (field.rows - 1))); };
+  const auto row = [&](const layers::vec2& uv) {
+    return static_cast<int>(std::lround(uv.y * (field.rows - 1)));
+  };
   return {row(mesh.uvs.front()), row(mesh.uvs.back())};
 }
 
@@ -79,7 +81,8 @@ void remap(layers::Mesh& mesh, const layers::HeightField& field, Rows rows) {
   const float length = static_cast<float>(rows.last - rows.first + 2 * kTextureMargin);
   for (layers::vec2& uv : mesh.uvs) {
     uv.x = (uv.x * static_cast<float>(field.columns - 1) + kTextureMargin) / columns;
-    uv.y = (uv.y * static_cast<float>(field.rows - 1) - static_cast<float>(rows.first - kTextureMargin)) / length;
+    uv.y = (uv.y * static_cast<float>(field.rows - 1) - static_cast<float>(rows.first - kTextureMargin)) /
+           length;
   }
 }
 
@@ -112,7 +115,8 @@ std::vector<GroundClass> read_ground_classes(const std::string& list_file) {
     ground.texture_file = file.has_extension() ? file.string() : file.string() + ".png";
     classes.push_back(ground);
   }
-  if (classes.empty()) throw InputError("lists no ground class, rule: entries with [texture] and [col]", list_file);
+  if (classes.empty())
+    throw InputError("lists no ground class, rule: entries with [texture] and [col]", list_file);
   return classes;
 }
 
@@ -126,7 +130,8 @@ layers::HeightField read_height_field(const TerrainContent& content) {
   for (std::size_t i = 0; i < heights.size(); ++i)
     heights[i] = content.low_m + (content.high_m - content.low_m) * grey.rgba[4 * i] / 255.0;
   const std::vector<double> weights = half_gaussian(content.smooth_cells);
-  for (const bool along_x : {true, false}) heights = smoothed(heights, grey.width, grey.height, along_x, weights);
+  for (const bool along_x : {true, false})
+    heights = smoothed(heights, grey.width, grey.height, along_x, weights);
   layers::HeightField field;
   field.columns = grey.width;
   field.rows = grey.height;
@@ -136,9 +141,11 @@ layers::HeightField read_height_field(const TerrainContent& content) {
 }
 
 double ground_height(const layers::HeightField& field, double x_m, double z_m) {
-  const double column = std::clamp(x_m / field.cell_x_m + (field.columns - 1) / 2.0, 0.0, field.columns - 1.0);
+  const double column =
+      std::clamp(x_m / field.cell_x_m + (field.columns - 1) / 2.0, 0.0, field.columns - 1.0);
   const double row = std::clamp(-z_m / field.cell_z_m, 0.0, field.rows - 1.0);
-  const int c = std::min(static_cast<int>(column), field.columns - 2), r = std::min(static_cast<int>(row), field.rows - 2);
+  const int c = std::min(static_cast<int>(column), field.columns - 2),
+            r = std::min(static_cast<int>(row), field.rows - 2);
   const double fc = column - c, fr = row - r;
   const auto h = [&](int dc, int dr) {
     return double{field.heights_m[static_cast<std::size_t>(r + dr) * field.columns + c + dc]};

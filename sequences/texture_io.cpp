@@ -23,6 +23,7 @@ OIIO::ImageSpec straight_alpha() {
 void spread_channels(const std::vector<std::uint8_t>& pixels, int channels, layers::Texture& texture) {
   const std::size_t count = static_cast<std::size_t>(texture.width) * texture.height;
   texture.rgba.resize(4 * count);
+  std::uint8_t seen = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* from = &pixels[i * channels];
     std::uint8_t* to = &texture.rgba[4 * i];
@@ -30,7 +31,12 @@ void spread_channels(const std::vector<std::uint8_t>& pixels, int channels, laye
     for (int k = 0; k < 3; ++k) to[k] = from[grey ? 0 : k];
     to[3] = channels == 2 ? from[1] : channels >= 4 ? from[3] : 255;
     texture.has_alpha |= to[3] < 255;
+    seen |= to[3];
   }
+  // Old painters wrote an alpha channel and left it zero; nobody draws a picture in order not to see it.
+  if (seen > 0) return;
+  for (std::size_t i = 0; i < count; ++i) texture.rgba[4 * i + 3] = 255;
+  texture.has_alpha = false;
 }
 
 layers::Texture read_open_image(std::unique_ptr<OIIO::ImageInput> input, const std::string& name) {
@@ -39,9 +45,11 @@ layers::Texture read_open_image(std::unique_ptr<OIIO::ImageInput> input, const s
     throw InputError("not an image that can be read: " + (why.empty() ? "unknown format" : why), name);
   }
   const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide || spec.nchannels < 1)
+  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide ||
+      spec.nchannels < 1)
     throw InputError("image of " + std::to_string(spec.width) + " × " + std::to_string(spec.height) + " × " +
-                         std::to_string(spec.nchannels) + ", rule: sides from 1 to " + std::to_string(kMaxSide),
+                         std::to_string(spec.nchannels) + ", rule: sides from 1 to " +
+                         std::to_string(kMaxSide),
                      name);
   layers::Texture texture;
   texture.name = name;

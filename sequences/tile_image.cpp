@@ -32,7 +32,8 @@ TileImage linear_tile(const layers::Texture& texture) {
 TileImage cover_tile(const layers::Texture& texture) {
   TileImage tile{texture.width, texture.height, {}};
   for (std::size_t i = 0; i < texture.rgba.size(); i += 4)
-    tile.texels.push_back(layers::vec3(static_cast<float>(texture.rgba[i + (texture.has_alpha ? 3 : 0)]) / 255.0f));
+    tile.texels.push_back(
+        layers::vec3(static_cast<float>(texture.rgba[i + (texture.has_alpha ? 3 : 0)]) / 255.0f));
   return tile;
 }
 

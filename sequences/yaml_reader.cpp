@@ -51,15 +51,18 @@ std::string YamlValue::written() const {
   return node_->IsMap() ? "a map" : "nothing";
 }
 
+int YamlValue::line() const { return node_->Mark().line + 1; }
+
 void YamlValue::fail(const std::string& rule) const {
-  throw InputError(path_ + " is " + written() + ", rule: " + rule, file_, node_->Mark().line + 1);
+  const std::string what = path_.empty() ? "the file" : path_;
+  throw InputError(what + " is " + written() + ", rule: " + rule, file_, line());
 }
 
 double YamlValue::number(const Range& range) const {
   double value = 0;
   if (!node_->IsScalar() || !YAML::convert<double>::decode(*node_, value)) fail(in_words(range));
-  const bool inside = std::isfinite(value) && value <= range.high &&
-                      (range.above ? value > range.low : value >= range.low);
+  const bool inside =
+      std::isfinite(value) && value <= range.high && (range.above ? value > range.low : value >= range.low);
   if (!inside) fail(in_words(range));
   return value;
 }
@@ -102,21 +105,25 @@ glm::vec3 YamlValue::color() const {
     return {v[0].number(kNotNegative), v[1].number(kNotNegative), v[2].number(kNotNegative)};
   }
   const std::string hex = node_->IsScalar() ? node_->Scalar() : "";
-  if (hex.size() != 7 || hex[0] != '#' || hex.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
+  if (hex.size() != 7 || hex[0] != '#' ||
+      hex.find_first_not_of("0123456789abcdefABCDEF", 1) != std::string::npos)
     fail(rule);
   glm::vec3 linear;
   for (int k = 0; k < 3; ++k)
-    linear[k] = linear_from_srgb(static_cast<float>(std::stoi(hex.substr(1 + 2 * k, 2), nullptr, 16)) / 255.0f);
+    linear[k] =
+        linear_from_srgb(static_cast<float>(std::stoi(hex.substr(1 + 2 * k, 2), nullptr, 16)) / 255.0f);
   return linear;
 }
 
 bool YamlValue::is_list() const { return node_->IsSequence(); }
 
 std::vector<YamlValue> YamlValue::items(std::size_t at_least) const {
-  if (!node_->IsSequence() || node_->size() < at_least) fail("a list of " + std::to_string(at_least) + " or more");
+  if (!node_->IsSequence() || node_->size() < at_least)
+    fail("a list of " + std::to_string(at_least) + " or more");
   std::vector<YamlValue> items;
   for (std::size_t i = 0; i < node_->size(); ++i)
-    items.emplace_back((*node_)[i], std::string(path_).append("[").append(std::to_string(i)).append("]"), file_);
+    items.emplace_back((*node_)[i], std::string(path_).append("[").append(std::to_string(i)).append("]"),
+                       file_);
   return items;
 }
 
@@ -143,6 +150,20 @@ int YamlValue::choice(const std::vector<std::string>& names) const {
 YamlMap::YamlMap(std::map<std::string, YamlValue> values, YamlValue self)
     : values_(std::move(values)), self_(std::move(self)) {}
 
+namespace {
+
+/// Equal but for one letter that was changed, left out or added.
+bool is_one_edit_away(const std::string& a, const std::string& b) {
+  const std::string &shorter = a.size() < b.size() ? a : b, &longer = a.size() < b.size() ? b : a;
+  if (longer.size() - shorter.size() > 1) return false;
+  std::size_t same = 0;
+  while (same < shorter.size() && shorter[same] == longer[same]) ++same;
+  const std::size_t skip = longer.size() == shorter.size() ? 1 : 0;
+  return shorter.compare(std::min(same + skip, shorter.size()), std::string::npos, longer, same + 1, std::string::npos) == 0;
+}
+
+}  // namespace
+
 const YamlValue* YamlMap::find(const std::string& key) {
   known_.insert(key);
   const auto found = values_.find(key);
@@ -150,9 +171,12 @@ const YamlValue* YamlMap::find(const std::string& key) {
 }
 
 const YamlValue& YamlMap::need(const std::string& key) {
-  const YamlValue* value = find(key);
-  if (!value) self_.fail("has the key '" + key + "'");
-  return *value;
+  if (const YamlValue* value = find(key)) return *value;
+  // A misspelt key is both missing and unknown; the line to show is the one where it was written.
+  for (const auto& [written, value] : values_)
+    if (!known_.count(written) && is_one_edit_away(written, key))
+      value.fail("key '" + written + "' is not known here; did you mean '" + key + "'");
+  self_.fail("has the key '" + key + "'");
 }
 
 void YamlMap::read(const std::string& key, double& into, const Range& range) {
@@ -196,7 +220,8 @@ void YamlMap::replace_by(const YamlMap& over) {
 YamlMap read_yaml_text(const std::string& text, const std::string& file) {
   try {
     const YAML::Node root = YAML::Load(text);
-    if (!root.IsMap()) throw InputError("is not a map of keys and values, rule: a sequence file is a YAML map", file, 1);
+    if (!root.IsMap())
+      throw InputError("is not a map of keys and values, rule: a sequence file is a YAML map", file, 1);
     return YamlValue(root, "", file).map();
   } catch (const YAML::Exception& e) {
     throw InputError("not YAML: " + e.msg, file, e.mark.line + 1);
@@ -208,7 +233,8 @@ YamlMap read_yaml_file(const std::string& file) {
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   if (error) throw InputError("cannot be read: " + error.message(), file);
   if (size > kMaxBytes)
-    throw InputError("has " + std::to_string(size) + " bytes, rule: at most " + std::to_string(kMaxBytes), file);
+    throw InputError("has " + std::to_string(size) + " bytes, rule: at most " + std::to_string(kMaxBytes),
+                     file);
   std::ifstream in(file, std::ios::binary);
   std::ostringstream text;
   text << in.rdbuf();

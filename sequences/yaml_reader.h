@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// YAML without guesses: every value has a type and a range, every key is known, and whatever is wrong is an InputError
-/// `FILE:LINE: what, the value, the rule`. A reader asks a map for the keys it knows and then calls `finish`, which
-/// refuses the keys that nobody asked for and lists those that exist.
+/// YAML without guesses: every value has a type and a range, every key is known, and whatever is wrong is an
+/// InputError `FILE:LINE: what, the value, the rule`. A reader asks a map for the keys it knows and then
+/// calls `finish`, which refuses the keys that nobody asked for and lists those that exist.
 
 #include <cstddef>
 #include <limits>
@@ -45,10 +45,10 @@ class YamlValue {
   double number(const Range& range = kAnyNumber) const;
   int integer(int low, int high) const;
   bool boolean() const;
-  std::string text() const;                        ///< not empty
-  glm::dvec3 vector() const;                       ///< [x, y, z], finite
-  glm::dvec2 pair(const Range& range) const;       ///< [a, b]
-  glm::vec3 color() const;                         ///< [r, g, b] linear, ≥ 0, or "#rrggbb" in sRGB
+  std::string text() const;                   ///< not empty
+  glm::dvec3 vector() const;                  ///< [x, y, z], finite
+  glm::dvec2 pair(const Range& range) const;  ///< [a, b]
+  glm::vec3 color() const;                    ///< [r, g, b] linear, ≥ 0, or "#rrggbb" in sRGB
   std::vector<YamlValue> items(std::size_t at_least = 1) const;
   YamlMap map() const;
   /// Index of the text in `names`.
@@ -58,11 +58,12 @@ class YamlValue {
   /// "what, the value, the rule" with file and line.
   [[noreturn]] void fail(const std::string& rule) const;
   const std::string& file() const { return file_; }
+  int line() const;  ///< from 1
 
  private:
   std::string written() const;
   std::shared_ptr<const YAML::Node> node_;
-  std::string path_;                               ///< "camera.flight.keys[3].t"
+  std::string path_;  ///< "camera.flight.keys[3].t"
   std::string file_;
 };
 

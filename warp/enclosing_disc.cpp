@@ -80,7 +80,7 @@ dvec2 farthest_from(dvec2 centre, std::span<const dvec2> points) {
 
 /// Σ λ r² / Σ λ r less what rounding may have added; see min_max.h, with H the unit matrix.
 double lower_bound(const Candidate& active, double upper) {
-  double squares = 0, norms = 0, sum = 0;
+  double squares = 0, norms = 0;
   dvec2 drift{0, 0};
   for (int k = 0; k < active.count; ++k) {
     const double share = std::max(0.0, active.share[k]);
@@ -88,7 +88,6 @@ double lower_bound(const Candidate& active, double upper) {
     squares += share * glm::dot(r, r);
     norms += share * glm::length(r);
     drift += share * r;
-    sum += share;
   }
   if (!(norms > 0)) return 0;
   return std::max(0.0, (squares - 4 * upper * glm::length(drift)) / norms * (1 - kSame));

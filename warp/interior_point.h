@@ -9,8 +9,8 @@
 ///
 /// A step is Newton's on this system with λᵢ cᵢ = μ in place of 0, after Mehrotra: a predictor with μ = 0
 /// tells how small μ may be chosen, and its second-order terms correct the step. Because f is a quadratic
-/// (exactly so in the linear families) the corrector knows them: along s·dx, fᵢ bends by bendᵢ = ‖Jᵢ dx‖² and
-/// Σ λᵢ gᵢ by -Σ dλᵢ JᵢᵀJᵢ dx. That is why some 5 steps suffice where a log-barrier method took 23
+/// (exactly so in the linear families) the corrector knows them: along a·dx, fᵢ bends by a² bendᵢ = a² ‖Jᵢ
+/// dx‖² and Σ λᵢ gᵢ by -Σ dλᵢ JᵢᵀJᵢ dx. That is why some 5 steps suffice where a log-barrier method took 23
 /// (performance of the prototypes: [A §5]).
 ///
 /// The normal matrix is H + 2 Σ κᵢ (gᵢ - m)(gᵢ - m)ᵀ with H = Σ λᵢ JᵢᵀJᵢ, κᵢ = λᵢ/cᵢ and m the κ-mean of g: s
@@ -46,7 +46,7 @@ class InteriorPoint {
     set_level(kStartLevel);
   }
 
-  /// False when rounding leaves no step that stays inside; the iterate is then unchanged.
+  /// False when there is no step that stays inside, even after going back to the middle some times.
   bool step() {
     if (!(level_ > 0) || !linearise()) return false;
     const double mean = complementarity();
@@ -63,12 +63,10 @@ class InteriorPoint {
     find_direction(bent);
     double way = (1 - std::clamp(left, kLeastMargin, kMostMargin)) * way_to_boundary();
     if (way < kShortWay) way = recentred_way(mean);
-    short_steps_ = way < kShortWay ? short_steps_ + 1 : 0;
-    if (short_steps_ == kShortSteps) {
-      restart();
-      return true;
-    }
-    return move(std::min(1.0, way));
+    const double moved = move(std::min(1.0, way));
+    short_steps_ = moved < kShortWay ? short_steps_ + 1 : 0;
+    if (moved > 0 && short_steps_ < patience_) return true;
+    return restart();
   }
 
   /// Σ λ c / s: what the present iterate can at best be certified to, relative to s.
@@ -87,10 +85,10 @@ class InteriorPoint {
   static constexpr double kStartLevel = 1.02, kLeastShare = 0.1;
   static constexpr double kShortWay = 0.3, kRecentre = 0.5, kLeastMargin = 1e-3, kMostMargin = 0.02;
   static constexpr double kRestartLevel = 1.5, kCarefulLeft = 0.5;
-  static constexpr int kShortSteps = 2;
+  static constexpr int kShortSteps = 2, kMostPatience = 32;
   using Unknowns = typename Model::Unknowns;
   struct Point {
-    double dual, gap, kappa;
+    double dual, gap, per_gap, kappa;
     double d_dual, d_gap, bend, target;
     dvec2 along;
     Unknowns g;
@@ -105,13 +103,16 @@ class InteriorPoint {
       points_[i].gap = level_ - columns_.f[i];
     }
   }
-  /// Keeps the iterate and goes back to the middle, from there on with smaller reductions of μ: complementarity that
-  /// has fallen ahead of stationarity cannot be mended by steps along the boundary.
-  void restart() {
+  /// Keeps the iterate and goes back to the middle, from there on with smaller reductions of μ:
+  /// complementarity that has fallen ahead of stationarity cannot be mended by steps along the boundary.
+  bool restart() {
+    if (patience_ > kMostPatience) return false;
     for (int i = 0; i < n_; ++i) points_[i].dual = 1.0 / n_;
     set_level(kRestartLevel);
     short_steps_ = 0;
+    patience_ *= 2;
     least_left_ = kCarefulLeft;
+    return true;
   }
 
   double largest() const { return *std::max_element(columns_.f, columns_.f + n_); }
@@ -130,7 +131,8 @@ class InteriorPoint {
     for (int i = 0; i < n_; ++i) {
       Point& p = points_[i];
       p.g = model_.gradient(i);
-      p.kappa = p.dual / p.gap;
+      p.per_gap = 1 / p.gap;
+      p.kappa = p.dual * p.per_gap;
       sum_kappa_ += p.kappa;
       sum_dual_ += p.dual;
       add_scaled<kUnknowns>(mean_, p.kappa, p.g);
@@ -153,7 +155,7 @@ class InteriorPoint {
     double sum = sum_dual_ - 1;
     Unknowns b = stationarity_;
     for (int i = 0; i < n_; ++i) {
-      const double e = points_[i].target / points_[i].gap;
+      const double e = points_[i].target * points_[i].per_gap;
       sum += e;
       add_scaled<kUnknowns>(b, e, points_[i].g);
     }
@@ -167,7 +169,7 @@ class InteriorPoint {
       p.along = model_.along(i, dx_);
       p.bend = model_.bend(i, p.along, dx_);
       p.d_gap = d_level_ + 2 * (columns_.rx[i] * p.along.x + columns_.ry[i] * p.along.y);
-      p.d_dual = p.target / p.gap - p.kappa * p.d_gap;
+      p.d_dual = p.target * p.per_gap - p.kappa * p.d_gap;
     }
   }
 
@@ -204,7 +206,9 @@ class InteriorPoint {
     return a;
   }
 
-  bool move(double a) {
+  /// The share of the step that stays inside, halved from `a`; 0 if none does, and the iterate is then
+  /// unchanged.
+  double move(double a) {
     const Unknowns x = model_.x;
     const double level = level_;
     for (int tries = 0; tries < kMostHalvings; ++tries, a *= 0.5) {
@@ -216,12 +220,12 @@ class InteriorPoint {
         points_[i].gap = level_ - columns_.f[i];
         points_[i].dual += a * points_[i].d_dual;
       }
-      return true;
+      return a;
     }
     model_.x = x;
     level_ = level;
     model_.update();
-    return false;
+    return 0;
   }
 
   Model& model_;
@@ -230,7 +234,7 @@ class InteriorPoint {
   double level_ = 0, d_level_ = 0, sum_kappa_ = 0, sum_dual_ = 0;
   Unknowns mean_{}, stationarity_{}, dx_{};
   double least_left_ = 0;
-  int short_steps_ = 0;
+  int short_steps_ = 0, patience_ = kShortSteps;
   Cholesky<kUnknowns> root_;
   Point* points_;
   Point inline_[kInline];

@@ -119,7 +119,7 @@ class PostDivideRun {
   const Progress<PostDivideModel>& progress() const { return progress_; }
 
  private:
-  static constexpr int kMostSteps = 60;
+  static constexpr int kMostSteps = 200;
   // More corrections gain nothing: the remainder is then rounding.
   static constexpr int kCorrections = 2;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The few dense operations that the maximum-norm fits need, for sizes of 2 to 12: no heap, fixed order of
+/// The few dense operations that the maximum-norm fits need, for sizes of 2 to 8: no heap, fixed order of
 /// summation.
 
 #include <array>
@@ -35,18 +35,15 @@ void add_outer(Mat<D>& m, double factor, const Vec<D>& v) {
   }
 }
 
-/// H = L Lᵀ of the leading `size` rows and columns; reads and keeps the lower triangle only, and the
-/// reciprocals of L's diagonal in place of the diagonal, because each is divided by more often than it is
-/// made.
+/// H = L Lᵀ; reads and keeps the lower triangle only, and the reciprocals of L's diagonal in place of the diagonal,
+/// because each is divided by more often than it is made.
 template <int D>
 struct Cholesky {
   Mat<D> lower;
-  int size = D;
 
   /// False if a pivot is not above `tiny_pivot` times its diagonal entry: numerically not positive definite.
-  bool factor(const Mat<D>& h, double tiny_pivot, int used = D) {
-    size = used;
-    for (int i = 0; i < size; ++i) {
+  bool factor(const Mat<D>& h, double tiny_pivot) {
+    for (int i = 0; i < D; ++i) {
       for (int j = 0; j < i; ++j) {
         double sum = h[i][j];
         for (int k = 0; k < j; ++k) sum -= lower[i][k] * lower[j][k];
@@ -61,15 +58,15 @@ struct Cholesky {
   }
   /// v becomes L⁻¹ v.
   void forward(Vec<D>& v) const {
-    for (int i = 0; i < size; ++i) {
+    for (int i = 0; i < D; ++i) {
       for (int k = 0; k < i; ++k) v[i] -= lower[i][k] * v[k];
       v[i] *= lower[i][i];
     }
   }
   /// v becomes L⁻ᵀ v.
   void backward(Vec<D>& v) const {
-    for (int i = size - 1; i >= 0; --i) {
-      for (int k = i + 1; k < size; ++k) v[i] -= lower[k][i] * v[k];
+    for (int i = D - 1; i >= 0; --i) {
+      for (int k = i + 1; k < D; ++k) v[i] -= lower[k][i] * v[k];
       v[i] *= lower[i][i];
     }
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What does a rendered sprite cost? The workload of the peers' table: a displaced sphere at 1024², 5k / 70k / 500k triangles.
-// Mtri/s counts the triangles of the layer, Mpix/s the display pixels that the sphere covers.
+// What does a rendered sprite cost? The workload of the peers' table: a displaced sphere at 1024², 5k / 70k /
+// 500k triangles. Mtri/s counts the triangles of the layer, Mpix/s the display pixels that the sphere covers.
 #include <numeric>
 
 #include <benchmark/benchmark.h>
@@ -28,9 +28,9 @@ layers::Scene workload(int triangles) {
   return scene;
 }
 
-void render_sphere(benchmark::State& state, chunker::Shading shading) {
-  const layers::Scene scene = workload(static_cast<int>(state.range(0)));
-  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, state.range(1));
+void render_scene(benchmark::State& state, const layers::Scene& scene, chunker::Shading shading,
+                  std::int64_t thread_count) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, thread_count);
   const chunker::PreparedScene prepared(scene);
   const layers::SceneFrame frame = scene.at(0);
   std::vector<int> parts(scene.parts.size());
@@ -45,7 +45,9 @@ void render_sphere(benchmark::State& state, chunker::Shading shading) {
     benchmark::DoNotOptimize(result);
   }
   const double runs = static_cast<double>(state.iterations());
-  const auto rate = [&](double count) { return benchmark::Counter(count * runs / 1e6, benchmark::Counter::kIsRate); };
+  const auto rate = [&](double count) {
+    return benchmark::Counter(count * runs / 1e6, benchmark::Counter::kIsRate);
+  };
   state.counters["Mtri/s"] = rate(static_cast<double>(result.counters.polygons_in));
   state.counters["Mpix/s"] = rate(static_cast<double>(covered(result.sprite)));
   state.counters["shaded"] = static_cast<double>(result.counters.pixels_shaded);
@@ -54,10 +56,28 @@ void render_sphere(benchmark::State& state, chunker::Shading shading) {
   state.counters["subdivided"] = static_cast<double>(result.counters.chunk_subdivisions);
 }
 
-void RenderGouraud(benchmark::State& state) { render_sphere(state, chunker::Shading::Gouraud); }
-void RenderPhong(benchmark::State& state) { render_sphere(state, chunker::Shading::Phong); }
+void RenderGouraud(benchmark::State& state) {
+  render_scene(state, workload(static_cast<int>(state.range(0))), chunker::Shading::Gouraud, state.range(1));
+}
+void RenderPhong(benchmark::State& state) {
+  render_scene(state, workload(static_cast<int>(state.range(0))), chunker::Shading::Phong, state.range(1));
+}
 
-BENCHMARK(RenderGouraud)->ArgsProduct({{5000, 70000, 500000}, {1, 2}})->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(RenderPhong)->ArgsProduct({{5000, 70000, 500000}, {1}})->Unit(benchmark::kMillisecond)->UseRealTime();
+/// Nothing but filling: one textured, lit square over the whole display.
+void FillDisplay(benchmark::State& state) {
+  layers::Scene scene = tests::textured_quad_scene();
+  for (layers::vec3& p : scene.meshes[scene.parts[0].mesh].positions) p *= 4.0f;
+  render_scene(state, scene, chunker::Shading::Gouraud, state.range(0));
+}
+
+BENCHMARK(FillDisplay)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RenderGouraud)
+    ->ArgsProduct({{5000, 70000, 500000}, {1, 2}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(RenderPhong)
+    ->ArgsProduct({{5000, 70000, 500000}, {1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace

@@ -48,7 +48,7 @@ Linear16 unpack(PackedPixel packed) {
 /// [colour, alpha] of `source` over [colour, alpha] of `below`. The frame itself is always opaque; the inner
 /// loop is not bound to that.
 Linear16 over(Texel source, Linear16 below) {
-  PackedPixel line[kRunPixels];
+  alignas(64) PackedPixel line[kRunPixels];
   std::fill_n(line, kRunPixels, pack(below));
   blend_run(every_pixel(source), Multiplier{}, line);
   return unpack(line[kRunPixels - 1]);

@@ -3,8 +3,12 @@
 
 #include <cmath>
 #include <limits>
+#include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
+
+#include "chunker/encode_row.h"
 
 namespace talisman::chunker {
 namespace {
@@ -30,6 +34,24 @@ TEST(Encode, IsMonotone) {
   for (int i = 1; i <= 100000; ++i)
     ASSERT_LE(encode_sqrt(static_cast<float>(i - 1) * 1e-5f), encode_sqrt(static_cast<float>(i) * 1e-5f))
         << i;
+}
+
+// The lanes must give the bytes of the one-texel formula, for any number of texels, in and far out of range.
+TEST(EncodeRow, EqualsEncodeBitByBit) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<float> wide(-0.5f, 1.5f);
+  for (int count = 0; count <= 33; ++count) {
+    std::vector<Float4> colors(static_cast<std::size_t>(count));
+    for (Float4& c : colors)
+      c = Float4{wide(random), random() % 8 ? wide(random) : std::numeric_limits<float>::quiet_NaN(),
+                 random() % 8 ? wide(random) : std::numeric_limits<float>::infinity(), wide(random)};
+    std::vector<Texel> texels(colors.size() + 1, Texel{1, 2, 3, 4});
+    encode_row(colors.data(), count, texels.data());
+    for (int i = 0; i < count; ++i)
+      EXPECT_EQ(texels[i], encode({colors[i][0], colors[i][1], colors[i][2], colors[i][3]}))
+          << count << " " << i;
+    EXPECT_EQ(texels[count], (Texel{1, 2, 3, 4})) << "written beyond the row";
+  }
 }
 
 TEST(Decode, WhiteIsOne) { EXPECT_EQ(decode(Texel{255, 255, 255, 255}), (Linear16{kOne, kOne, kOne, kOne})); }

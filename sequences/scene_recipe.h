@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a sequence file says about its scene, as data: read from YAML without opening any asset.
+/// `build_scene` then opens the assets. All units are those of the file: metres, seconds, degrees
+/// (docs/sequence-format.md).
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "layers/layer.h"
+#include "sequences/model_import.h"
+#include "sequences/sky_content.h"
+#include "sequences/terrain_content.h"
+#include "sequences/yaml_reader.h"
+
+namespace talisman::sequences {
+
+/// Where something stands, or how it flies and turns.
+struct Motion {
+  layers::Transform rest;
+  std::optional<layers::FlightTrack> flight;
+  std::optional<layers::SpinTrack> spin;
+};
+
+struct ModelInstance {
+  std::string name;  ///< of its node; its parts are called name/…
+  Motion motion;
+};
+
+struct ModelRecipe {
+  std::string file;
+  double scale = 1;
+  std::optional<double> length_m;   ///< instead of scale: the longest side of the bounds
+  layers::dvec3 turn_deg{0, 0, 0};  ///< about x, then y, then z
+  bool centered = false;            ///< the middle of the bounds becomes the origin
+  bool two_sided = false;           ///< for files with careless windings
+  std::vector<ModelInstance> instances;
+};
+
+struct CameraRecipe {
+  double fov_deg = 50, near_m = 0.1, far_m = 10000;
+  Motion motion;
+};
+
+struct SceneRecipe {
+  std::vector<ModelRecipe> models;
+  std::optional<TerrainContent> terrain;
+  std::optional<SkyContent> sky;
+  std::optional<CameraRecipe> camera;
+  std::vector<layers::Light> lights;
+  layers::vec3 background{0, 0, 0};
+};
+
+/// Takes the keys background, models, terrain, sky, camera and lights out of the map; leaves the others
+/// alone.
+SceneRecipe read_scene_recipe(YamlMap& sequence);
+
+struct BuiltScene {
+  layers::Scene scene;
+  std::vector<LayerTag> layer_tags;
+  std::vector<std::string> warnings;
+};
+
+/// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of
+/// `add_default_view`; cameras and lights inside its models are not used.
+BuiltScene build_scene(const SceneRecipe& recipe);
+
+/// An orbit around all parts (one turn in 5 s, seen slightly from above) if there is no camera; a sun and
+/// ambient light if there is no light. Any unit scale is framed.
+void add_default_view(layers::Scene& scene);
+
+/// Bounds of all parts over the scene's duration (sampled at 9 times).
+layers::WorldBounds bounds_of_scene(const layers::Scene& scene);
+
+}  // namespace talisman::sequences
