@@ -173,9 +173,9 @@ std::vector<Solver> solver_ladder() {
     return [=](auto then, auto now) { return fit_normal_equations_float(then, now, centred); };
   };
   const std::vector<Solver> others{
-      on_points("normal equations float32", Family::Affine, naive_float(false)),
-      on_points("normal equations float64", Family::Affine, fit_normal_equations),
-      on_points("centred normal equations float32", Family::Affine, naive_float(true)),
+      on_points("normal eq. float32", Family::Affine, naive_float(false)),
+      on_points("normal eq. float64", Family::Affine, fit_normal_equations),
+      on_points("normal eq. float32, centred", Family::Affine, naive_float(true)),
       kept_k(),
       deciding(Curve::affi),
       with_gap(Curve::affi, 1e-1, "1e-1"),

@@ -35,7 +35,7 @@ LadderInput workload_input(std::uint64_t seed, int points);
 using ReadyFit = std::function<warp::FitResult()>;
 
 struct Solver {
-  std::string name;  ///< "affi", "affi gap 1e-2", "normal equations float32", …
+  std::string name;  ///< "affi", "affi gap 1e-2", "normal eq. float32", …
   warp::Family family = warp::Family::Affine;
   /// The relative gap that it promises between max_px and its certified lower bound; negative: no
   /// certificate.

@@ -116,8 +116,8 @@ TEST(NormalEquations, SingularPointsAreDegenerateAndFinite) {
 }
 
 TEST(StabilityOf, RawNormalEquationsBreakLongBeforeTheCentredFits) {
-  const FitStability raw32 = stability_of(solver("normal equations float32"));
-  const FitStability raw64 = stability_of(solver("normal equations float64"));
+  const FitStability raw32 = stability_of(solver("normal eq. float32"));
+  const FitStability raw64 = stability_of(solver("normal eq. float64"));
   const FitStability aff = stability_of(solver("aff"));
   EXPECT_LT(raw32.largest_offset_px, raw64.largest_offset_px);
   EXPECT_LE(raw64.largest_offset_px, 1e5);
@@ -187,7 +187,7 @@ TEST(RunAccuracy, WritesOneLinePerSolverAndSizeAndThePlots) {
   EXPECT_GE(front, 2u);
   for (const char* name : {"solvers.svg", "solvers-affine.svg", "solvers-perspective.svg"})
     EXPECT_GT(std::filesystem::file_size(dir / name), 1000u) << name;
-  EXPECT_THAT(out.str(), testing::HasSubstr("normal equations float32"));
+  EXPECT_THAT(out.str(), testing::HasSubstr("normal eq. float32"));
   std::filesystem::remove_all(dir);
 }
 

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <map>
+#include <optional>
 
 #include <glm/geometric.hpp>
 #include <gmock/gmock.h>
@@ -379,20 +380,46 @@ TEST(ReadBezierPatches, BadFilesAreRefusedInWords) {
   }
 }
 
+/// TALISMAN_ASSETS for the time of one test.
+class AssetsFolder {
+ public:
+  explicit AssetsFolder(const std::string& path) {
+    if (const char* before = std::getenv("TALISMAN_ASSETS")) before_ = before;
+    ::setenv("TALISMAN_ASSETS", path.c_str(), 1);
+  }
+  ~AssetsFolder() {
+    before_ ? ::setenv("TALISMAN_ASSETS", before_->c_str(), 1) : ::unsetenv("TALISMAN_ASSETS");
+  }
+
+ private:
+  std::optional<std::string> before_;
+};
+
 TEST(LoadWarpObject, MissingContentNamesTheCommandAndTheRestIsThere) {
   const Folder folder;
-  const char* before = std::getenv("TALISMAN_ASSETS");
-  const std::string kept = before ? before : "";
-  ::setenv("TALISMAN_ASSETS", folder.path.c_str(), 1);
+  const AssetsFolder assets(folder.path.string());
   std::vector<MissingObject> missing;
   std::vector<std::string> names;
   for (const WarpObject& there : load_warp_objects(missing)) names.push_back(there.name);
-  before ? ::setenv("TALISMAN_ASSETS", kept.c_str(), 1) : ::unsetenv("TALISMAN_ASSETS");
   EXPECT_THAT(names, ElementsAre("vase", "box", "flat-box"));
   ASSERT_EQ(missing.size(), 5u);
   EXPECT_EQ(missing[0].name, "teapot");
   for (const MissingObject& object : missing)
     EXPECT_THAT(object.why, HasSubstr("sequences/fetch-assets warps"));
+}
+
+TEST(LoadWarpObject, EveryPackageIsInTheListThatIsFetched) {
+  std::ifstream in(TALISMAN_SOURCE_DIR "/sequences/warps/packages");
+  const std::string listed((std::istreambuf_iterator<char>(in)), {});
+  const Folder empty;
+  const AssetsFolder assets(empty.path.string());
+  std::vector<MissingObject> missing;
+  load_warp_objects(missing);
+  ASSERT_FALSE(missing.empty());
+  for (const MissingObject& object : missing) {
+    const std::size_t from = object.why.find("': ") + 3;
+    EXPECT_THAT(listed, HasSubstr(object.why.substr(from, object.why.find(":/") - from))) << object.why;
+  }
 }
 
 TEST(LoadWarpObject, UnknownNameListsTheKnownOnes) {
