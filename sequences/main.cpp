@@ -10,9 +10,11 @@
 #include <CLI/CLI.hpp>
 #include <oneapi/tbb/global_control.h>
 
+#include "sequences/accuracy_command.h"
 #include "sequences/diff.h"
 #include "sequences/inspect.h"
 #include "sequences/options.h"
+#include "sequences/warps_command.h"
 
 namespace {
 
@@ -93,6 +95,8 @@ struct Commands {
   std::string inspected;
   bool json = false, profile = false;
   DiffOptions diff;
+  WarpsOptions warps;
+  AccuracyOptions accuracy;
   int exit_code = kSuccess;
 
   Commands() {
@@ -120,6 +124,24 @@ struct Commands {
     diff_command->add_flag("--json", diff.json, "print JSON");
     diff_command->add_option("--map", diff.map_dir, "write FLIP error maps into this folder");
     diff_command->callback([this] { exit_code = run_diff(diff, std::cout); });
+    add_experiments();
+  }
+
+  void add_experiments() {
+    CLI::App* warps_command =
+        app.add_subcommand("warps", "update rate against error of every warp, and picture quality at one rate");
+    warps_command->add_option("--object", warps.object, "name or file of one object (all)");
+    warps_command->add_option("--bound", warps.bound, "characteristic polyhedron: box8, dop14 or dop26");
+    warps_command->add_option("--out", warps.out, "result folder (out/warps)");
+    warps_command->add_option("--progress", warps.progress, "auto, bar, plain or none");
+    warps_command->callback([this] { exit_code = run_warps(warps, std::cout); });
+
+    CLI::App* accuracy_command = app.add_subcommand("accuracy", "what accuracy costs in time");
+    accuracy_command->add_flag("--solvers", accuracy.solvers, "every solver of warps: time, error, stability");
+    accuracy_command->add_option("--inputs", accuracy.inputs, "boxes per number of points");
+    accuracy_command->add_option("--out", accuracy.out, "result folder (out/accuracy)");
+    accuracy_command->add_option("--progress", accuracy.progress, "auto, bar, plain or none");
+    accuracy_command->callback([this] { exit_code = run_accuracy(accuracy, std::cout); });
   }
 };
 

@@ -93,6 +93,20 @@ std::string curve(const PlotSeries& series, std::size_t index) {
   return text + " title " + quoted(series.name);
 }
 
+/// What is written beside the points, in the colour of the series; slanted, so that neighbours do not run
+/// into each other.
+std::string label_words(const PlotSeries& series, const Plot& plot, std::size_t index) {
+  std::string text;
+  for (std::size_t i = 0; i < series.labels.size(); ++i) {
+    const PlotPoint& p = series.points[i];
+    if (series.labels[i].empty() || !drawable(p, plot)) continue;
+    text += "set label " + quoted(series.labels[i]) + " at " + number(p.x) + "," + number(p.y) +
+            " offset 0.5,0.5 rotate by 40 font 'Helvetica,11' textcolor rgb '" +
+            kColors[index % kColors.size()] + "'\n";
+  }
+  return text;
+}
+
 std::string axis_words(const char* which, const PlotAxis& axis) {
   std::string text = std::string("set ") + which + "label " + quoted(with_unit(axis, " (", ")")) + "\n";
   if (axis.logarithmic) text += std::string("set logscale ") + which + "\nset format " + which + " '%g'\n";
@@ -132,7 +146,9 @@ std::string plot_script(const Plot& plot, const PlotFiles& files) {
   std::string curves;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
     if (!anything_drawable(plot.series[i], plot)) continue;
-    script += data_block(plot.series[i], plot, i);
+    TALISMAN_CHECK(plot.series[i].labels.empty() ||
+                   plot.series[i].labels.size() == plot.series[i].points.size());
+    script += data_block(plot.series[i], plot, i) + label_words(plot.series[i], plot, i);
     curves += (curves.empty() ? "plot " : ", \\\n     ") + curve(plot.series[i], i);
   }
   return script + (curves.empty() ? empty_plot(plot) : curves + "\n");

@@ -25,6 +25,8 @@ struct PlotSeries {
   std::string name;  ///< in the legend and in the CSV
   std::vector<PlotPoint> points;
   SeriesStyle style = SeriesStyle::LinePoints;
+  std::vector<std::string> labels =
+      {};  ///< written beside the points, one for each; empty: none. Not in the CSV
 };
 
 struct PlotAxis {

@@ -6,6 +6,7 @@
 
 #include "fiducials/fiducials.h"
 #include "layers/check.h"
+#include "warp/shade.h"
 
 namespace talisman::sequences {
 
@@ -104,7 +105,7 @@ LayerAssessment assess_layer(const Pipeline& pipeline, int frame, const LayerMem
     assessment.fitted.status = warp::FitStatus::Converged;  // the identity, without error
   else
     assessment.fitted =
-        warp::fit(matched.then_px, matched.now_px, pipeline.settings.curve, pipeline.settings.fit);
+        warp::fit(*memory.then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
   assessment.fiducials = fiducials::assess(*memory.then, now, memory.placement, matched, assessment.fitted);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
