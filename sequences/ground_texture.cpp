@@ -41,13 +41,14 @@ GroundPainter::GroundPainter(const TerrainContent& content, const layers::Height
     : columns_(field.columns), rows_(field.rows), cell_m_(content.cell_m), tile_m_(content.tile_m) {
   if (content.classes_file.empty() || content.classes.empty()) return;
   const layers::Texture map = read_texture(content.classes_file);
-  if (map.width != columns_ || map.height != rows_)
+  if (map.width != columns_ || map.height - content.first_row != rows_)
     throw InputError("class image of " + std::to_string(map.width) + " × " + std::to_string(map.height) +
                          ", rule: as many pixels as the height map, " + std::to_string(columns_) + " × " +
-                         std::to_string(rows_),
+                         std::to_string(rows_ + content.first_row),
                      content.classes_file);
   std::map<std::size_t, std::uint8_t> tile_of;  // class → index into tiles_
-  for (std::size_t i = 0; i < map.rgba.size(); i += 4) {
+  const std::size_t first = 4 * static_cast<std::size_t>(content.first_row) * map.width;
+  for (std::size_t i = first; i < map.rgba.size(); i += 4) {
     const std::size_t found = nearest_class(content.classes, &map.rgba[i]);
     const auto [entry, is_new] = tile_of.emplace(found, static_cast<std::uint8_t>(tiles_.size()));
     if (is_new) {

@@ -49,8 +49,8 @@ struct ImportedModel {
 
 /// Reads a model with its materials, textures, node animation, skins, cameras and lights. Throws InputError
 /// that names the file and what is wrong with it (missing, truncated, crashed its reader, took longer than …,
-/// not-a-number positions, indices out of range). Cost: a process start (about 20 ms) and two copies of the
-/// scene.
+/// not-a-number positions, indices out of range). Cost: a process start (about 0.4 s, nearly all of it for
+/// loading what the image library depends on) and two copies of the scene.
 ImportedModel import_model(const std::string& path, const ImportLimits& limits = {});
 
 /// The stream between child and parent: magic, version, then every field in the order of its struct, each

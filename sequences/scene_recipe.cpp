@@ -146,6 +146,7 @@ TerrainContent read_terrain(YamlMap map) {
     const layers::dvec2 heights = range->pair({-20000, 20000});
     terrain.low_m = heights.x, terrain.high_m = heights.y;
   }
+  map.read("first_row", terrain.first_row, 0, 1 << 20);
   map.read("smooth_cells", terrain.smooth_cells, {0, 16});
   map.read("segments", terrain.segments, 1, 1000);
   map.read("seam_cells", terrain.seam_cells, 0, 64);

@@ -122,9 +122,9 @@ std::vector<GroundClass> read_ground_classes(const std::string& list_file) {
 
 layers::HeightField read_height_field(const TerrainContent& content) {
   const layers::Texture grey = read_texture(content.heights_file);
-  if (grey.width < 2 || grey.height < 2)
+  if (grey.width < 2 || grey.height - content.first_row < 2)
     throw InputError("height map of " + std::to_string(grey.width) + " × " + std::to_string(grey.height) +
-                         ", rule: at least 2 × 2",
+                         " from row " + std::to_string(content.first_row) + ", rule: at least 2 × 2",
                      content.heights_file);
   std::vector<double> heights(static_cast<std::size_t>(grey.width) * grey.height);
   for (std::size_t i = 0; i < heights.size(); ++i)
@@ -134,9 +134,10 @@ layers::HeightField read_height_field(const TerrainContent& content) {
     heights = smoothed(heights, grey.width, grey.height, along_x, weights);
   layers::HeightField field;
   field.columns = grey.width;
-  field.rows = grey.height;
+  field.rows = grey.height - content.first_row;
   field.cell_x_m = field.cell_z_m = static_cast<float>(content.cell_m);
-  field.heights_m.assign(heights.begin(), heights.end());
+  const std::ptrdiff_t left_out = static_cast<std::ptrdiff_t>(content.first_row) * grey.width;
+  field.heights_m.assign(heights.begin() + left_out, heights.end());
   return field;
 }
 

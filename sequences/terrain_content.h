@@ -37,7 +37,8 @@ struct TerrainContent {
   std::string heights_file;
   double cell_m = 4;               ///< > 0; distance of samples
   double low_m = 0, high_m = 150;  ///< heights of grey 0 and of white
-  double smooth_cells = 1;         ///< 0 … 16; standard deviation; more rounds the rocks off
+  int first_row = 0;        ///< ≥ 0; rows of the pictures before it are left out, and it lies at z = 0
+  double smooth_cells = 1;  ///< 0 … 16; standard deviation; more rounds the rocks off
   int segments = 6;    ///< 1 … rows / 2; more of them follow parallax more closely, and are more sprites
   int seam_cells = 1;  ///< 0 … 64; rows by which a segment reaches over each inner border
   std::string classes_file;  ///< as many pixels as heights; empty: one colour

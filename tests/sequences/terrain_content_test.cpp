@@ -76,11 +76,31 @@ TEST(HeightField, SmoothingKeepsSlopesAndTheMeanAndEndsSteps) {
   }
 }
 
+TEST(HeightField, RowsBeforeTheFirstAreLeftOutOfHeightsAndColours) {
+  const TemporaryFolder folder;
+  TerrainContent content = two_class_terrain(folder);
+  content.smooth_cells = 1;
+  content.classes_file = folder.write("half.pgm", pgm(8, 21, [](int, int y) { return y < 12 ? 0 : 255; }));
+  const layers::HeightField all = read_height_field(content);
+  content.first_row = 12;
+  const layers::HeightField rest = read_height_field(content);
+  ASSERT_EQ(rest.rows, 9);
+  // Smoothed before it is cut: a cut does not change the land that stays.
+  EXPECT_TRUE(std::equal(rest.heights_m.begin(), rest.heights_m.end(), all.heights_m.begin() + 12 * 8));
+  const layers::Texture blue = GroundPainter(content, rest).bake({0, 0, 7, 8}, 1);
+  EXPECT_EQ(blue.rgba[0], 0);
+  EXPECT_EQ(blue.rgba[2], 255);
+  content.first_row = 20;
+  EXPECT_THAT(message_of([&] { read_height_field(content); }),
+              HasSubstr("8 × 21 from row 20, rule: at least 2 × 2"));
+}
+
 TEST(HeightField, TooSmallPicturesAreRefused) {
   const TemporaryFolder folder;
   TerrainContent content = two_class_terrain(folder);
   content.heights_file = folder.write("line.pgm", pgm(1, 9, [](int, int) { return 0; }));
-  EXPECT_THAT(message_of([&] { read_height_field(content); }), HasSubstr("1 × 9, rule: at least 2 × 2"));
+  EXPECT_THAT(message_of([&] { read_height_field(content); }),
+              HasSubstr("1 × 9 from row 0, rule: at least 2 × 2"));
 }
 
 TEST(AddTerrain, SegmentsGetTheirOwnTexturesAndTheColoursOfTheirClasses) {
