@@ -30,6 +30,7 @@ layers::LayerPreferences read_preferences(YamlMap map) {
   map.read("min_update_rate", preferences.min_update_rate, {0, 1});
   map.read("max_update_rate", preferences.max_update_rate, {0, 1, true});
   map.read("share_of_expected_motion", preferences.share_of_expected_motion, kNotNegative);
+  map.read("bound_each_part", preferences.bound_each_part);
   if (const YamlValue* importance = map.find("importance"))
     preferences.importance = read_importance(importance->map());
   map.finish();

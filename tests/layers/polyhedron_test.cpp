@@ -369,7 +369,7 @@ TEST(MakeLayerBound, EachPartHasItsOwnPolyhedronWhereTheLayerAsksForIt) {
       const layers::SceneFrame frame = scene.at(t);
       const auto points = layers::world_points(frame, layer, bound);
       std::size_t first = 0;
-      for (const LayerBound& body : bound.bodies) {
+      for (const layers::LayerBound& body : bound.bodies) {
         layers::Layer alone = layer;
         alone.preferences.bound_each_part = false;
         alone.parts = {body.part};
