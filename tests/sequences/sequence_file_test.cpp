@@ -330,10 +330,10 @@ TEST_F(Canyon, CameraSeesTheShips) {
   EXPECT_LT(hidden, shown / 10);
 }
 
-TEST_F(Canyon, HasTheTenLayersOfThePaper) {
+TEST_F(Canyon, HasTheLayersThatItsReadmeNames) {
   const Sequence canyon = load_sequence("canyon");
   EXPECT_EQ(canyon.frames, 250);
-  EXPECT_EQ(canyon.layers.layers.size(), 10u);
+  EXPECT_EQ(canyon.layers.layers.size(), 11u);
   EXPECT_EQ(canyon.layers.unassigned_parts, 0);
   for (const layers::Layer& layer : canyon.layers.layers) EXPECT_GE(layer.rigid_node, 0) << layer.name;
   for (const std::string& warning : canyon.warnings) ADD_FAILURE() << warning;
