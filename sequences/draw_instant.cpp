@@ -9,8 +9,7 @@ namespace talisman::sequences {
 
 namespace {
 
-/// Would the layer's sprite of one instant be shown at another? Remembers the placement of the instant asked
-/// about last.
+/// Would the layer's sprite of one instant be shown at another?
 class Judge {
  public:
   Judge(const Pipeline& pipeline, PipelineState& state, int layer, int frame_rendered)
@@ -21,23 +20,15 @@ class Judge {
     if (!now.touches_display) return true;  // not shown
     const layers::LayerState& then = states_at(pipeline_, state_, instant)[layer_];
     if (!then.touches_display) return false;  // nothing to draw
-    const regulator::LayerAssessment assessment =
-        assess_sprite(pipeline_, then, placement_of(instant), now, frame - frame_rendered_);
+    const regulator::LayerAssessment assessment = assess_sprite(
+        pipeline_, then, placement_at(pipeline_, state_, layer_, instant), now, frame - frame_rendered_);
     return regulator::violation_of(assessment, pipeline_.settings.regulator).empty();
   }
 
  private:
-  const layers::SpritePlacement& placement_of(int instant) {
-    if (instant != placed_) placement_ = placement_at(pipeline_, state_, layer_, instant);
-    placed_ = instant;
-    return placement_;
-  }
-
   const Pipeline& pipeline_;
   PipelineState& state_;
   int layer_, frame_rendered_;
-  int placed_ = -1;
-  layers::SpritePlacement placement_;
 };
 
 }  // namespace

@@ -38,25 +38,31 @@ double time_of(const Pipeline& pipeline, int frame) { return frame / pipeline.se
 
 const std::vector<LayerState>& states_at(const Pipeline& pipeline, PipelineState& state, int frame) {
   const auto [entry, is_new] = state.captured.try_emplace(frame);
-  if (!is_new) return entry->second;
+  CapturedFrame& captured = entry->second;
+  if (!is_new) return captured.states;
   const layers::SceneFrame scene_frame = pipeline.scene.at(time_of(pipeline, frame));
-  entry->second.reserve(pipeline.layers.layers.size());
+  captured.states.reserve(pipeline.layers.layers.size());
   for (const Layer& layer : pipeline.layers.layers)
-    entry->second.push_back(
+    captured.states.push_back(
         layers::capture(scene_frame, layer, pipeline.bounds[layer.id], pipeline.settings.view));
-  return entry->second;
+  captured.placements.resize(captured.states.size());
+  return captured.states;
 }
 
 void forget_states_before(PipelineState& state, int frame) {
   state.captured.erase(state.captured.begin(), state.captured.lower_bound(frame));
 }
 
-SpritePlacement placement_at(const Pipeline& pipeline, PipelineState& state, int layer, int frame) {
+const SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer, int frame) {
+  const LayerState& now = states_at(pipeline, state, frame)[layer];
+  std::optional<SpritePlacement>& known = state.captured.at(frame).placements[layer];
+  if (known) return *known;
   const double expected_reuse = regulator::expected_reuse_frames(
       pipeline.settings.regulator, pipeline.settings.extents.expected_reuse_frames);
-  const LayerState& now = states_at(pipeline, state, frame)[layer];
-  if (!(expected_reuse > 0)) return placement_without_growth(pipeline, now);
-  return place_layer(pipeline, now, states_at(pipeline, state, frame + 1)[layer], expected_reuse);
+  known = expected_reuse > 0
+              ? place_layer(pipeline, now, states_at(pipeline, state, frame + 1)[layer], expected_reuse)
+              : placement_without_growth(pipeline, now);
+  return *known;
 }
 
 SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerState& now) {

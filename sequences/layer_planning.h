@@ -20,8 +20,9 @@ const std::vector<layers::LayerState>& states_at(const Pipeline& pipeline, Pipel
 void forget_states_before(PipelineState& state, int frame);
 
 /// Where the layer's sprite lies if it is rendered at the instant of `frame`. Extents grow only where the
-/// sprite is to be moved later.
-layers::SpritePlacement placement_at(const Pipeline& pipeline, PipelineState& state, int layer, int frame);
+/// sprite is to be moved later. Computed once for each instant.
+const layers::SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer,
+                                            int frame);
 
 /// The same without growth: as the policy `reference` draws it.
 layers::SpritePlacement placement_without_growth(const Pipeline& pipeline, const layers::LayerState& now);

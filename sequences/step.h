@@ -60,13 +60,19 @@ struct LayerMemory {
   bool drawn = false;       ///< the sprite store holds that picture (false: planned only)
 };
 
+/// What is known of one frame of the motion: the states of all layers, and where their sprites would lie as
+/// far as that was asked for.
+struct CapturedFrame {
+  std::vector<layers::LayerState> states;                          ///< by layer id
+  std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
+};
+
 /// All that survives a frame.
 struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline) : memory(pipeline.layers.layers.size()) {}
   std::vector<LayerMemory> memory;
   chunker::SpriteStore sprites;
-  /// By frame, the states of all layers, each captured once: of this frame and of those looked at ahead.
-  std::map<int, std::vector<layers::LayerState>> captured;
+  std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
 };
 
 struct StageTimes {
