@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "layers/check.h"
+#include "regulator/budget.h"
 #include "regulator/policies.h"
 
 namespace talisman::regulator {
@@ -21,6 +22,12 @@ std::string_view name(Policy policy) {
       return "interpolate";
     case Policy::Threshold:
       return "threshold";
+    case Policy::Budget:
+      return "budget";
+    case Policy::Lookahead:
+      return "lookahead";
+    case Policy::Oracle:
+      return "oracle";
   }
   return "?";
 }
@@ -50,21 +57,30 @@ std::string comparison(const char* what, double value, const char* relation, dou
   return text;
 }
 
+LayerDecision drop(const LayerAssessment& layer) {
+  return {layer.layer, Action::Drop, "out_of_view", {}, 0, 0, {}, -1};
+}
+
 LayerDecision rerender(const LayerAssessment& layer, std::string reason) {
-  LayerDecision decision{layer.layer, Action::Rerender, std::move(reason), {}, 0, 0, layer.cost};
+  LayerDecision decision{layer.layer, Action::Rerender, std::move(reason), {}, 0, 0, layer.cost, -1};
   decision.warp_geometric_px = layer.has_sprite ? layer.fiducials.geometric.px : 0;
   return decision;
 }
 
 LayerDecision reuse(const LayerAssessment& layer, std::string reason) {
   const double error = layer.fiducials.geometric.px;
-  return {layer.layer, Action::Reuse, std::move(reason), layer.fitted.warp, error, error, {}};
+  return {layer.layer, Action::Reuse, std::move(reason), layer.fitted.warp, error, error, {}, -1};
 }
 
 LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason) {
-  return {layer.layer, Action::Reuse,           std::move(reason),
-          {},          layer.held_geometric_px, layer.fiducials.geometric.px,
-          {}};
+  return {layer.layer,
+          Action::Reuse,
+          std::move(reason),
+          {},
+          layer.held_geometric_px,
+          layer.fiducials.geometric.px,
+          {},
+          -1};
 }
 
 LayerDecision decide_every_frame(const LayerAssessment& layer, std::string reason) {
@@ -74,7 +90,7 @@ LayerDecision decide_every_frame(const LayerAssessment& layer, std::string reaso
 namespace {
 
 LayerDecision decide(int frame, const LayerAssessment& layer, const RegulatorOptions& options) {
-  if (!layer.in_view) return {layer.layer, Action::Drop, "out_of_view", {}, 0, 0, {}};
+  if (!layer.in_view) return drop(layer);
   if (options.policy == Policy::Direct) return decide_every_frame(layer, "policy: direct");
   if (!layer.has_sprite) return rerender(layer, "first_appearance");
   switch (options.policy) {
@@ -86,7 +102,11 @@ LayerDecision decide(int frame, const LayerAssessment& layer, const RegulatorOpt
     case Policy::Interpolate:
       return decide_interpolate(frame, layer, options);
     case Policy::Threshold:
+    case Policy::Lookahead:  // whether to draw again; as of which instant is chosen with the states at hand
+    case Policy::Oracle:
       return decide_threshold(layer, options);
+    case Policy::Budget:
+      break;  // decides over all layers at once
   }
   return {};
 }
@@ -96,6 +116,10 @@ LayerDecision decide(int frame, const LayerAssessment& layer, const RegulatorOpt
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options) {
   TALISMAN_CHECK_EQ(first_defect(options), std::string());
   FramePlan plan{frame, {}};
+  if (options.policy == Policy::Budget) {
+    plan.decisions = decide_budget(assessments, options);
+    return plan;
+  }
   plan.decisions.reserve(assessments.size());
   for (const LayerAssessment& layer : assessments) plan.decisions.push_back(decide(frame, layer, options));
   return plan;
@@ -117,6 +141,11 @@ std::string first_defect(const RegulatorOptions& o) {
   if (!(o.anisotropy == 0 || o.anisotropy >= 1))
     return broken("anisotropy", o.anisotropy, "0 (off) or at least 1");
   if (std::isnan(o.uncovered_px)) return broken("uncovered_px", o.uncovered_px, "a number (negative: off)");
+  if (o.lookahead_frames < 0) return broken("lookahead_frames", o.lookahead_frames, "at least 0");
+  if (o.budget_polygons < 0)
+    return broken("budget_polygons", static_cast<double>(o.budget_polygons), "at least 0");
+  if (o.budget_pixels < 0) return broken("budget_pixels", static_cast<double>(o.budget_pixels), "at least 0");
+  if (!(o.cutoff_px >= 0)) return broken("cutoff_px", o.cutoff_px, "at least 0");
   return {};
 }
 
@@ -130,7 +159,11 @@ double expected_reuse_frames(const RegulatorOptions& options, double threshold_d
     case Policy::Interpolate:
       return options.hold_frames - 1;
     case Policy::Threshold:
+    case Policy::Lookahead:
+    case Policy::Oracle:
       return options.geometric_px > 0 ? threshold_default : 0;
+    case Policy::Budget:
+      return threshold_default;
   }
   return 0;
 }

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -25,9 +26,13 @@ enum class Policy {
   Hold,         ///< every N frames; shown where it was in between (triple framing is N = 3)
   Interpolate,  ///< every N frames, warped in between
   Threshold,    ///< when a fiducial exceeds its threshold
+  Budget,       ///< what gains most for its cost, until the frame's budget is spent
+  Lookahead,    ///< as Threshold, but drawn as of the instant within N frames that serves longest
+  Oracle,       ///< as Lookahead over the whole sequence: the fewest renders under the same bound
 };
-inline constexpr std::array kAllPolicies = {Policy::Direct, Policy::Reference, Policy::Hold,
-                                            Policy::Interpolate, Policy::Threshold};
+inline constexpr std::array kAllPolicies = {Policy::Direct,      Policy::Reference, Policy::Hold,
+                                            Policy::Interpolate, Policy::Threshold, Policy::Budget,
+                                            Policy::Lookahead,   Policy::Oracle};
 std::string_view name(Policy policy);
 std::optional<Policy> policy_from_name(std::string_view text);
 
@@ -58,6 +63,9 @@ struct LayerAssessment {
   layers::LayerPreferences preferences;
 };
 
+/// The budget of a frame that is not limited.
+inline constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+
 /// Options of all policies. Thresholds: a layer is rendered again when a fiducial exceeds its threshold.
 struct RegulatorOptions {
   Policy policy = Policy::Threshold;
@@ -67,6 +75,13 @@ struct RegulatorOptions {
   double minification = 0.5;   ///< 0 … 1: texels squeezed by more; 0: not regulated
   double anisotropy = 2;       ///< ≥ 1; 0: not regulated
   double uncovered_px = 1;     ///< ≥ 0: a cut side may be this far in view; negative: not regulated
+  int lookahead_frames = 16;   ///< Lookahead: N ≥ 0; a sprite may be drawn as of an instant up to N frames
+                               ///< ahead; 0 is Threshold; planning time grows with N, renders fall
+  std::int64_t budget_polygons = kNoLimit;  ///< Budget: triangles per frame, ≥ 0; more is drawn as it grows
+  std::int64_t budget_pixels = kNoLimit;    ///< Budget: sprite texels per frame, ≥ 0; likewise
+  double cutoff_px = 0.004;  ///< Budget: ≥ 0; a layer whose benefit (regulator/budget.h) is not above it is
+                             ///< never drawn again; the default is 1/1000 of a typical error of 4 px [LS97
+                             ///< 6]; more leaves resources unspent
   bool operator==(const RegulatorOptions&) const = default;
 };
 
@@ -80,6 +95,8 @@ struct LayerDecision {
   double shown_geometric_px = 0;  ///< error of what is displayed; 0 for a fresh sprite
   double warp_geometric_px = 0;   ///< error that the warp would have had (also when it was rejected)
   LayerCost cost;                 ///< spent: zero unless rendered
+  int depicts_frame = -1;  ///< the frame at whose instant the sprite was drawn; ahead of the frame it is
+                           ///< shown in only with Lookahead and Oracle; -1 if nothing is shown or not known
 };
 
 struct FramePlan {
@@ -93,7 +110,7 @@ FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, cons
 std::string first_defect(const RegulatorOptions& options);
 
 /// For how many later frames a sprite is expected to be moved by a warp: 0 where none is (Direct, Reference,
-/// Hold, or a threshold of 0 px), N - 1 for Interpolate, `threshold_default` for Threshold. Extents grow in
+/// Hold, or a threshold of 0 px), N - 1 for Interpolate, `threshold_default` for the rest. Extents grow in
 /// proportion.
 double expected_reuse_frames(const RegulatorOptions& options, double threshold_default = 8);
 

@@ -16,6 +16,19 @@ LayerDecision decide_hold(int frame, const LayerAssessment& layer, const Regulat
 LayerDecision decide_interpolate(int frame, const LayerAssessment& layer, const RegulatorOptions& options);
 LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options);
 
+/// Why the old sprite, carried by the fitted warp, is not good enough ("geometric 4.7 > 4 px"); empty if it
+/// is. The one test of Threshold, Lookahead and Oracle, so that their renders can be compared.
+std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& options);
+
+/// Wishes of the author [LS97 2.4]: is it time for a render, or too early for one?
+bool due_by_minimum_rate(const LayerAssessment& layer);
+bool barred_by_maximum_rate(const LayerAssessment& layer);
+
+/// The fit is usable and rests on enough points to say something about the motion.
+bool has_sound_fit(const LayerAssessment& layer);
+
+/// Nothing of the layer is in view.
+LayerDecision drop(const LayerAssessment& layer);
 /// A fresh sprite; shown without a warp and without error.
 LayerDecision rerender(const LayerAssessment& layer, std::string reason);
 /// The old sprite, carried by the fitted warp.

@@ -25,6 +25,8 @@ std::string first_violation(const LayerAssessment& layer, const RegulatorOptions
   return {};
 }
 
+}  // namespace
+
 bool due_by_minimum_rate(const LayerAssessment& layer) {
   const double rate = layer.preferences.min_update_rate;
   return rate > 0 && layer.frames_since_render * rate >= 1;
@@ -34,25 +36,32 @@ bool barred_by_maximum_rate(const LayerAssessment& layer) {
   return layer.frames_since_render * layer.preferences.max_update_rate < 1;
 }
 
-}  // namespace
+bool has_sound_fit(const LayerAssessment& layer) {
+  return layer.fitted.usable() && layer.matched_points >= kFewestMatchedPoints;
+}
+
+std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& options) {
+  if (layer.identical) return {};
+  if (!(options.geometric_px > 0)) return "changed, geometric threshold 0 px";
+  std::string violation = first_violation(layer, options);
+  if (violation.empty() && due_by_minimum_rate(layer))
+    violation = comparison("min_update_rate: frames since render", layer.frames_since_render,
+                           ">=", 1 / layer.preferences.min_update_rate);
+  return violation;
+}
 
 /// Renders a layer again when a fiducial says that its warped sprite is no longer good enough: the threshold
 /// regulator of [LS97 6]. A threshold of 0 px reuses only what would be drawn identically, so that the
 /// pictures equal `reference`.
 LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options) {
   if (layer.identical) return reuse(layer, "unchanged");
-  std::string violation =
-      options.geometric_px > 0 ? first_violation(layer, options) : "changed, geometric threshold 0 px";
-  if (violation.empty() && due_by_minimum_rate(layer))
-    violation = comparison("min_update_rate: frames since render", layer.frames_since_render,
-                           ">=", 1 / layer.preferences.min_update_rate);
+  std::string violation = violation_of(layer, options);
   if (violation.empty())
     return reuse(layer,
                  comparison("geometric", layer.fiducials.geometric.px, "<=", options.geometric_px, "px"));
-  const bool fit_is_sound = layer.fitted.usable() && layer.matched_points >= kFewestMatchedPoints;
-  if (fit_is_sound && barred_by_maximum_rate(layer))
+  if (has_sound_fit(layer) && barred_by_maximum_rate(layer))
     return reuse(layer, "deferred: max_update_rate; " + violation);
-  return rerender(layer, violation);
+  return rerender(layer, std::move(violation));
 }
 
 }  // namespace talisman::regulator

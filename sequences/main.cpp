@@ -31,10 +31,19 @@ void add_run_options(CLI::App& command, CommandLine& line) {
       ->required();
   command.add_option("--out", line.out, "result folder (out/<name>; plans: out/<name>-plan)");
   command.add_option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run");
-  command.add_option("--policy", line.policy, "direct, reference, hold, interpolate or threshold");
+  command.add_option("--policy", line.policy,
+                     "direct, reference, hold, interpolate, threshold, budget, lookahead or oracle");
   command.add_option("--geometric-px", line.geometric_px,
                      "threshold of the geometric fiducial, pixels; 0: reuse only what is identical");
   command.add_option("--hold", line.hold, "N of the policies hold and interpolate");
+  command.add_option("--lookahead", line.lookahead,
+                     "N of the policy lookahead: frames ahead as of which a sprite may be drawn");
+  command.add_option("--budget-polygons", line.budget_polygons,
+                     "policy budget: triangles per frame; only first appearances may exceed it");
+  command.add_option("--budget-pixels", line.budget_pixels,
+                     "policy budget: sprite texels per frame, likewise");
+  command.add_option("--cutoff-px", line.cutoff_px,
+                     "policy budget: benefit up to which a layer is not drawn again, pixels");
   command.add_option("--warp", line.warp,
                      "warp curve: trn trni iso isoi so soi aff affi per peri per2 per2i pers pers2");
   command.add_option("--size", line.size, "display, WxH pixels");

@@ -72,6 +72,13 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   }
   if (line.geometric_px) options.geometric_px = *line.geometric_px;
   if (line.hold) options.hold_frames = *line.hold;
+  if (line.lookahead) options.lookahead_frames = *line.lookahead;
+  if (line.budget_polygons) options.budget_polygons = *line.budget_polygons;
+  if (line.budget_pixels) options.budget_pixels = *line.budget_pixels;
+  if (line.cutoff_px) options.cutoff_px = *line.cutoff_px;
+  if (options.policy == regulator::Policy::Budget && options.budget_polygons == regulator::kNoLimit &&
+      options.budget_pixels == regulator::kNoLimit)
+    throw InputError("--policy is 'budget', must come with --budget-polygons, --budget-pixels or both");
   if (const std::string defect = regulator::first_defect(options); !defect.empty()) throw InputError(defect);
 }
 
@@ -116,6 +123,7 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
         std::array{std::pair{"flat", chunker::Shading::Flat}, std::pair{"gouraud", chunker::Shading::Gouraud},
                    std::pair{"phong", chunker::Shading::Phong}});
   settings.fps = sequence.fps;
+  settings.frames = sequence.frames;
 
   RunOptions& options = run.options;
   options.plan_only = plan_only;

@@ -4,6 +4,7 @@
 /// The command line of `render` and `plan`, as it was typed, and how it overrides a sequence's own settings.
 /// The order of options never matters.
 
+#include <cstdint>
 #include <optional>
 #include <string>
 
@@ -18,8 +19,9 @@ struct CommandLine {
   std::string frames;  ///< "A-B", "A" or empty: all; inclusive
   std::string size;    ///< "WxH"
   std::string policy, warp, bound, shading, format = "png", progress = "auto";
-  std::optional<double> geometric_px, expected_reuse, resolution;
-  std::optional<int> hold;
+  std::optional<double> geometric_px, cutoff_px, expected_reuse, resolution;
+  std::optional<int> hold, lookahead;
+  std::optional<std::int64_t> budget_polygons, budget_pixels;
   int threads = 0;  ///< 0: all cores
   bool video = false, overlay = false, quality = false, resume = false;
 };

@@ -190,6 +190,7 @@ std::string json_of(const Pipeline& pipeline, const FrameReport& report, const r
       {"reason", d.reason},
       {"warp", json_of(d.shown_warp)},
       {"geometric_px", d.shown_geometric_px},
+      {"depicts_frame", d.depicts_frame >= 0 ? Json(d.depicts_frame) : Json(nullptr)},
       {"fiducials", report.assessments[d.layer].has_sprite && report.assessments[d.layer].in_view
                         ? json_of(report.assessments[d.layer])
                         : Json(nullptr)},

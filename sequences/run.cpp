@@ -47,6 +47,8 @@ Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& 
           {"policy", regulator::name(r.policy)},
           {"geometric_px", r.geometric_px},
           {"hold_frames", r.hold_frames},
+          {"lookahead", {r.lookahead_frames, s.frames}},
+          {"budget", {r.budget_polygons, r.budget_pixels, r.cutoff_px}},
           {"sampling", {r.magnification, r.minification, r.anisotropy}},
           {"uncovered_px", r.uncovered_px},
           {"warp", warp::name(s.curve)},

@@ -2,6 +2,7 @@
 #include "sequences/sequence_file.h"
 
 #include <filesystem>
+#include <limits>
 
 #include "sequences/asset_paths.h"
 #include "warp/warp.h"
@@ -61,15 +62,21 @@ void read_threshold(YamlMap& map, const char* key, double& into, const Range& ra
   if (into != 0) into = value->number(range);
 }
 
+void read_budget(YamlMap& map, const char* key, std::int64_t& into) {
+  if (const YamlValue* value = map.find(key)) into = value->integer(0, std::numeric_limits<int>::max());
+}
+
 regulator::RegulatorOptions read_regulator(YamlMap map) {
-  using regulator::Policy;
   regulator::RegulatorOptions options;
-  const std::vector<Policy> policies = {Policy::Direct, Policy::Reference, Policy::Hold, Policy::Interpolate,
-                                        Policy::Threshold};
   std::vector<std::string> names;
-  for (const Policy policy : policies) names.emplace_back(regulator::name(policy));
-  if (const YamlValue* policy = map.find("policy")) options.policy = policies[policy->choice(names)];
+  for (const regulator::Policy policy : regulator::kAllPolicies) names.emplace_back(regulator::name(policy));
+  if (const YamlValue* policy = map.find("policy"))
+    options.policy = regulator::kAllPolicies[policy->choice(names)];
   map.read("hold_frames", options.hold_frames, 1, kMaxFrames);
+  map.read("lookahead_frames", options.lookahead_frames, 0, kMaxFrames);
+  read_budget(map, "budget_polygons", options.budget_polygons);
+  read_budget(map, "budget_pixels", options.budget_pixels);
+  map.read("cutoff_px", options.cutoff_px, kNotNegative);
   map.read("geometric_px", options.geometric_px, kNotNegative);
   read_threshold(map, "magnification", options.magnification, {1, 1e6});
   read_threshold(map, "minification", options.minification, {0, 1});

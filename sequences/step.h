@@ -8,10 +8,11 @@
 ///
 /// Without a `PixelSide` a frame is planned and nothing is drawn; the decisions are the same. A frame may
 /// also be planned while its pictures are left for later: a sprite that was planned but not drawn is drawn,
-/// at the time for which it was planned, when a frame that must be shown needs it. From this follow --frames
-/// and --resume: any frame of a sequence comes out with the same bytes, however it is reached.
+/// as of the instant for which it was planned, when a frame that must be shown needs it. From this follow
+/// --frames and --resume: any frame of a sequence comes out with the same bytes, however it is reached.
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,6 +38,8 @@ struct Settings {
   layers::PlacementOptions placement;  ///< resolution_scale is multiplied with the layer's own
   chunker::RenderOptions render;
   double fps = 24;
+  int frames = 0;  ///< length of the sequence, however few of its frames are asked for; needed by the
+                   ///< policies that look ahead (Lookahead, Oracle), whose runs it ends
 };
 
 /// What does not change during a run. Keeps references.
@@ -48,12 +51,20 @@ struct Pipeline {
   std::vector<layers::LayerBound> bounds;  ///< one per layer
 };
 
-/// What is remembered of one layer: how it was when it was last rendered.
+/// What is remembered of one layer: how it was at the instant as of which it was last rendered.
 struct LayerMemory {
   std::optional<layers::LayerState> then;  ///< empty: never rendered
   layers::SpritePlacement placement;
-  int frame_rendered = -1;
-  bool drawn = false;  ///< the sprite store holds that picture (false: planned only)
+  int frame_rendered = -1;  ///< when the work was done
+  int depicts_frame = -1;   ///< as of which instant `then` is; later (or earlier) with Lookahead and Oracle
+  bool drawn = false;       ///< the sprite store holds that picture (false: planned only)
+};
+
+/// What is known of one frame of the motion: the states of all layers, and where their sprites would lie as
+/// far as that was asked for.
+struct CapturedFrame {
+  std::vector<layers::LayerState> states;                          ///< by layer id
+  std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
 };
 
 /// All that survives a frame.
@@ -61,6 +72,7 @@ struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline) : memory(pipeline.layers.layers.size()) {}
   std::vector<LayerMemory> memory;
   chunker::SpriteStore sprites;
+  std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
 };
 
 struct StageTimes {

@@ -221,9 +221,15 @@ TEST(RegulatorOptions, DefectsNameOptionValueAndRule) {
   options = {};
   options.hold_frames = 0;
   EXPECT_EQ(first_defect(options), "hold_frames is 0, must be at least 1");
+  options = {};
+  options.lookahead_frames = -1;
+  EXPECT_EQ(first_defect(options), "lookahead_frames is -1, must be at least 0");
+  options = {};
+  options.budget_pixels = -1;
+  EXPECT_EQ(first_defect(options), "budget_pixels is -1, must be at least 0");
   for (double RegulatorOptions::*field :
        {&RegulatorOptions::geometric_px, &RegulatorOptions::magnification, &RegulatorOptions::minification,
-        &RegulatorOptions::anisotropy, &RegulatorOptions::uncovered_px}) {
+        &RegulatorOptions::anisotropy, &RegulatorOptions::uncovered_px, &RegulatorOptions::cutoff_px}) {
     options = {};
     options.*field = NAN;
     EXPECT_NE(first_defect(options), "");

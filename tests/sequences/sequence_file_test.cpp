@@ -84,6 +84,21 @@ TEST(LoadSequence, EveryKeyArrives) {
   EXPECT_EQ(layers::first_defect(*s.scene), "");
 }
 
+TEST(LoadSequence, PoliciesThatLookAheadOrKeepABudgetAreNamedWithTheirNumbers) {
+  const TemporaryFolder folder;
+  std::vector<std::string> lines = kLines;
+  const std::size_t regulator = lines.size() - 5;
+  ASSERT_EQ(lines[regulator].rfind("regulator:", 0), 0u);
+  lines[regulator] =
+      "regulator: {policy: budget, budget_polygons: 900, budget_pixels: 0, cutoff_px: 0.5, lookahead_frames: 7}";
+  const regulator::RegulatorOptions options = load(folder, lines).regulator;
+  EXPECT_EQ(options.policy, regulator::Policy::Budget);
+  EXPECT_EQ(options.budget_polygons, 900);
+  EXPECT_EQ(options.budget_pixels, 0);
+  EXPECT_EQ(options.cutoff_px, 0.5);
+  EXPECT_EQ(options.lookahead_frames, 7);
+}
+
 TEST(LoadSequence, ModelsStandWhereTheFileSays) {
   const TemporaryFolder folder;
   const Sequence s = load(folder);

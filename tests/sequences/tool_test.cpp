@@ -136,6 +136,18 @@ TEST_F(Tool, FramesOfARangeAreThoseOfTheFullRun) {
   EXPECT_EQ(files_in("part/frames").size(), 3u);
 }
 
+TEST_F(Tool, FramesOfARangeUnderLookaheadAreThoseOfTheFullRun) {
+  // The runs end with the sequence, not with the range that was asked for.
+  for (const std::string policy : {"lookahead --lookahead 6", "oracle"}) {
+    const std::string options = "render cube.obj --size 64x48 --geometric-px 1 --progress none --policy " + policy;
+    ASSERT_EQ(run(options + " --out all --frames 0-24").exit_code, 0);
+    ASSERT_EQ(run(options + " --out part --frames 13-15").exit_code, 0);
+    for (const char* frame : {"0013.png", "0014.png", "0015.png"})
+      EXPECT_EQ(read(std::string("part/frames/") + frame), read(std::string("all/frames/") + frame))
+          << policy << " " << frame;
+  }
+}
+
 TEST_F(Tool, KilledRunContinuesWithTheSameBytes) {
   const std::string options = "render cube.obj --frames 0-59 --size 640x480 --progress none --out ";
   ASSERT_EQ(run(options + "whole").exit_code, 0);
@@ -180,6 +192,10 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
   expect_bad_input("render cube.obj --frames 5-2", {"--frames", "5-2"});
   expect_bad_input("render cube.obj --frames 0-999999", {"--frames", "0 <= A <= B"});
   expect_bad_input("render cube.obj --hold 0", {"hold_frames", "at least 1"});
+  expect_bad_input("render cube.obj --lookahead -1", {"lookahead_frames", "-1", "at least 0"});
+  expect_bad_input("render cube.obj --policy budget", {"--policy", "--budget-polygons", "--budget-pixels"});
+  expect_bad_input("render cube.obj --budget-polygons -5", {"budget_polygons", "-5", "at least 0"});
+  expect_bad_input("render cube.obj --cutoff-px nan", {"cutoff_px", "at least 0"});
   expect_bad_input("render cube.obj --format gif", {"--format", "gif", "png"});
   expect_bad_input("render cube.obj --format none --video", {"--video"});
   expect_bad_input("render cube.obj --threads -1", {"--threads"});

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which layers are drawn in this frame, if not all that would gain can be afforded? The seven steps of
+/// [LS97 6], and how far the paper's greedy order is from the best choice.
+///
+///   1 warps        given: LayerAssessment::fitted
+///   2 benefit      B = w_g F + w_s S + w_v V, pixels                                (`benefit_px`)
+///                    F  geometric fiducial, px
+///                    S  (max(σ₁, 1) - 1) + (1 / min(σ₂, 1) - 1) + (anisotropy - 1): display pixels over
+///                       which a texel is smeared, or texels skipped by a pixel; 0 at rest
+///                    V  depth to which a cut side has come into view, px
+///                    w  the layer's importance [LS97 2.4], no unit
+///                  0 where the state is identical; kMostBenefitPx where the old sprite cannot be warped
+///                  soundly or the author's minimum update rate makes a render due
+///   3 cost         c = polygons / polygon budget + pixels / pixel budget            (`share_of_budget`)
+///   4 order        by B / c, largest first; ties by layer id
+///   5 cut-off      B ≤ cutoff_px: not drawn again whatever is left
+///   6 parameters   the resolution of sprites is not regulated here
+///   7 render       in order; a layer that does not fit is deferred, a later and cheaper one may still fit
+///
+/// The budget of steps 3 and 7 is what first appearances leave of the frame's.
+///
+/// First appearances have nothing to show instead: they come first, in the order of layer ids, and are drawn
+/// even beyond the budget. In no other case is more spent than the budget.
+///
+/// The choice of step 7 is a 0/1 knapsack with two constraints (Horvitz & Lengyel 1997 choose by expected
+/// perceived cost). `greedy_choice` can be arbitrarily bad in theory; `optimal_choice` tells how bad it is.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "regulator/plan.h"
+
+namespace talisman::regulator {
+
+/// What may be spent.
+struct Budget {
+  std::int64_t polygons = kNoLimit, pixels = kNoLimit;
+  bool affords(const LayerCost& cost) const { return cost.polygons <= polygons && cost.pixels <= pixels; }
+};
+
+/// One layer that would gain by a render.
+struct Candidate {
+  int layer = -1;
+  double benefit_px = 0;  ///< ≥ 0
+  LayerCost cost;
+  bool operator==(const Candidate&) const = default;
+};
+
+struct Choice {
+  std::vector<int> layers;  ///< ids, ascending
+  double benefit_px = 0;    ///< summed in the order of the candidates
+  bool exact = true;        ///< optimal_choice: proved to be the most; false: too large, the greedy choice
+};
+
+/// The most that a layer can gain: more than any display is wide, small enough that sums keep the rest.
+inline constexpr double kMostBenefitPx = 1e6;
+
+/// B, 0 … kMostBenefitPx; what is not a number counts as the most.
+double benefit_px(const LayerAssessment& layer);
+
+/// c ≥ 0: 1 is a whole budget of polygons or of pixels. What is not limited costs nothing.
+double share_of_budget(const LayerCost& cost, const Budget& budget);
+
+/// Step 4: by benefit / cost, largest first, ties by id. Without any cost the benefit alone decides.
+void sort_by_benefit_per_cost(std::vector<Candidate>& candidates, const Budget& budget);
+
+/// Steps 4 and 7. Cost: O(n log n).
+Choice greedy_choice(std::span<const Candidate> candidates, const Budget& budget);
+
+/// The most benefit that the budget can buy: dynamic programming over the choices that no other choice beats
+/// in polygons, pixels and benefit at once (Nemhauser & Ullmann 1969). For analysis of small frames: time and
+/// memory grow with the number of such choices, at worst 2ⁿ; beyond `most_states` (≥ 1) the greedy choice is
+/// returned with `exact` false. Costs must not be negative.
+Choice optimal_choice(std::span<const Candidate> candidates, const Budget& budget,
+                      std::size_t most_states = 200'000);
+
+/// The share of the optimal benefit that the greedy choice misses, 0 … 1; 0 where there is nothing to gain.
+double greedy_gap(std::span<const Candidate> candidates, const Budget& budget);
+
+/// The layers that step 5 lets through, in the order of ids: in view, drawn before, worth it, not barred by
+/// their maximum update rate.
+std::vector<Candidate> candidates_of(std::span<const LayerAssessment> assessments,
+                                     const RegulatorOptions& options);
+
+/// What first appearances leave of the frame's budget; not negative.
+Budget left_after_first_appearances(std::span<const LayerAssessment> assessments,
+                                    const RegulatorOptions& options);
+
+/// All decisions of a frame under Policy::Budget, in the order of the assessments.
+std::vector<LayerDecision> decide_budget(std::span<const LayerAssessment> assessments,
+                                         const RegulatorOptions& options);
+
+}  // namespace talisman::regulator

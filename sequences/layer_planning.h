@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The decision side of one layer at one frame, as `step` and the search for the best instant to draw
+/// (draw_instant.h) share it: captured states, placement, cost, assessment. No pixel is touched.
+
+#include <vector>
+
+#include "sequences/step.h"
+
+namespace talisman::sequences {
+
+/// Does the policy draw sprites as of instants other than now?
+bool looks_ahead(const Pipeline& pipeline);
+
+double time_of(const Pipeline& pipeline, int frame);
+
+/// The states of all layers at `frame`, by layer id; captured once and kept in `state` (a frame ahead that
+/// was looked at is not captured again when it comes).
+const std::vector<layers::LayerState>& states_at(const Pipeline& pipeline, PipelineState& state, int frame);
+
+/// Forgets the states of frames before `frame`.
+void forget_states_before(PipelineState& state, int frame);
+
+/// Where the layer's sprite lies if it is rendered at the instant of `frame`. Extents grow only where the
+/// sprite is to be moved later. Computed once for each instant.
+const layers::SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer,
+                                            int frame);
+
+/// The same without growth: as the policy `reference` draws it.
+layers::SpritePlacement placement_without_growth(const Pipeline& pipeline, const layers::LayerState& now);
+
+regulator::LayerCost cost_of(const layers::Layer& layer, layers::ivec2 size_px);
+
+/// What showing at `now` the sprite as rendered at `then` with `placement` is worth. The layer is in view.
+regulator::LayerAssessment assess_sprite(const Pipeline& pipeline, const layers::LayerState& then,
+                                         const layers::SpritePlacement& placement,
+                                         const layers::LayerState& now, int frames_since_render);
+
+/// What the regulator knows about `layer` at `frame`.
+regulator::LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int layer, int frame);
+
+}  // namespace talisman::sequences
