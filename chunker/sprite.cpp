@@ -85,14 +85,21 @@ std::int64_t Sprite::bytes() const {
 }
 
 void SpriteStore::put(int layer, Sprite sprite) {
+  const std::int64_t bytes = sprite.bytes();
+  put(layer, std::move(sprite), bytes);
+}
+
+void SpriteStore::put(int layer, Sprite sprite, std::int64_t stored_bytes) {
   TALISMAN_CHECK_GE(layer, 0);
   const auto index = static_cast<std::size_t>(layer);
   if (index >= sprites_.size()) {
     sprites_.resize(index + 1);
     alive_.resize(index + 1, false);
+    stored_bytes_.resize(index + 1, 0);
   }
   sprites_[index] = std::move(sprite);
   alive_[index] = true;
+  stored_bytes_[index] = stored_bytes;
 }
 
 const Sprite* SpriteStore::find(int layer) const {
@@ -104,11 +111,12 @@ void SpriteStore::drop(int layer) {
   if (find(layer) == nullptr) return;
   sprites_[layer] = Sprite();
   alive_[layer] = false;
+  stored_bytes_[layer] = 0;
 }
 
 std::int64_t SpriteStore::bytes() const {
   std::int64_t sum = 0;
-  for (const Sprite& sprite : sprites_) sum += sprite.bytes();
+  for (const std::int64_t bytes : stored_bytes_) sum += bytes;
   return sum;
 }
 

@@ -53,6 +53,8 @@ class Sprite {
 class SpriteStore {
  public:
   void put(int layer, Sprite sprite);
+  /// The same for a sprite that is kept in other ways and takes `stored_bytes`.
+  void put(int layer, Sprite sprite, std::int64_t stored_bytes);
   const Sprite* find(int layer) const;  ///< null if there is none
   void drop(int layer);
   std::int64_t bytes() const;
@@ -60,6 +62,7 @@ class SpriteStore {
  private:
   std::vector<Sprite> sprites_;
   std::vector<bool> alive_;
+  std::vector<std::int64_t> stored_bytes_;
 };
 
 }  // namespace talisman::chunker

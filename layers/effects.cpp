@@ -36,12 +36,19 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
       if (part.skin >= 0) return "part '" + part.name + "' has a skin";
       break;
     case Effect::LayerResolution:
-      break;  // asked for by layers, not by parts
+    case Effect::MotionBlur:
+    case Effect::SpriteCompression:
+      break;  // asked for by layers and runs, not by parts
   }
   return {};
 }
 
-std::string call_of(const Scene& scene, const Layer& layer, Effect effect) {
+std::string call_of(const Scene& scene, const Layer& layer, Effect effect, const RunEffects& run) {
+  if (effect == Effect::SpriteCompression)
+    return run.compression_quality ? "the run asks for quality " + std::to_string(*run.compression_quality)
+                                   : "";
+  if (effect == Effect::MotionBlur)
+    return layer.preferences.motion_blur > 0 ? "layer '" + layer.name + "' has motion_blur > 0" : "";
   if (effect == Effect::LayerResolution)
     return layer.preferences.resolution_scale != 1 ? "layer '" + layer.name + "' has its own resolution" : "";
   for (const int part : layer.parts)
@@ -64,6 +71,10 @@ std::string why_not(const Scene& scene, Effect effect) {
       return "no part has a skin";
     case Effect::LayerResolution:
       return "every layer has the display's resolution";
+    case Effect::MotionBlur:
+      return "no layer has motion_blur > 0";
+    case Effect::SpriteCompression:
+      return "the run does not ask for it";
   }
   return {};
 }
@@ -86,16 +97,21 @@ std::string_view name(Effect effect) {
       return "skinning";
     case Effect::LayerResolution:
       return "layer_resolution";
+    case Effect::MotionBlur:
+      return "motion_blur";
+    case Effect::SpriteCompression:
+      return "sprite_compression";
   }
   return "?";
 }
 
-std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers) {
+std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers,
+                                           const RunEffects& run) {
   std::vector<EffectCall> table;
   for (const Effect effect : kAllEffects) {
     EffectCall call{effect, false, why_not(scene, effect), {}};
     for (const Layer& layer : layers) {
-      std::string why = call_of(scene, layer, effect);
+      std::string why = call_of(scene, layer, effect, run);
       if (why.empty()) continue;
       if (!call.called) call.why = std::move(why);
       call.called = true;

@@ -4,10 +4,11 @@
 /// Which effects does a scene call for, and why?
 ///
 /// What a scene does not use costs nothing: no pass, no memory, no counter. This table is computed from the
-/// scene and its layers alone, before anything is drawn, and names for every effect the element that calls
-/// for it or that none does.
+/// scene, its layers and the options of the run alone, before anything is drawn, and names for every effect the
+/// element that calls for it or that none does.
 
 #include <array>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -25,10 +26,12 @@ enum class Effect {
   Translucency,       ///< opacity < 1 or a texture with alpha
   Skinning,           ///< some drawn part has a skin
   LayerResolution,    ///< some layer asks for a resolution other than the display's
+  MotionBlur,         ///< some layer has an open shutter: sampled along its motion
+  SpriteCompression,  ///< the run keeps its sprites compressed
 };
 inline constexpr std::array kAllEffects = {Effect::Texture,           Effect::MipFilter,    Effect::Lighting,
                                            Effect::SpecularHighlight, Effect::Translucency, Effect::Skinning,
-                                           Effect::LayerResolution};
+                                           Effect::LayerResolution, Effect::MotionBlur, Effect::SpriteCompression};
 std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
 
 struct EffectCall {
@@ -38,7 +41,13 @@ struct EffectCall {
   std::vector<int> layers;  ///< ids of the layers that use it, ascending
 };
 
+/// The effects that a run asks for, whatever the scene.
+struct RunEffects {
+  std::optional<int> compression_quality;  ///< empty: sprites are kept as they are
+};
+
 /// One entry per effect, in the order of kAllEffects. Parts that no layer takes do not count. Cost: O(parts).
-std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers);
+std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers,
+                                           const RunEffects& run = {});
 
 }  // namespace talisman::layers

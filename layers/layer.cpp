@@ -92,6 +92,8 @@ std::string preferences_defect(const LayerPreferences& p) {
     return out_of_range("min_update_rate", p.min_update_rate, "at least 0, at most max_update_rate");
   if (!(p.share_of_expected_motion >= 0 && std::isfinite(p.share_of_expected_motion)))
     return out_of_range("share_of_expected_motion", p.share_of_expected_motion, "finite, at least 0");
+  if (!(p.motion_blur >= 0 && p.motion_blur <= 1))
+    return out_of_range("motion_blur", p.motion_blur, "at least 0, at most 1");
   return {};
 }
 

@@ -32,6 +32,10 @@ struct LayerPreferences {
   /// parts lie far apart: one box around them all knows nothing of the parallax between them. Cost: fits in
   /// proportion to the parts.
   bool bound_each_part = false;
+  /// Share of the frame interval during which the shutter is open; 0 … 1; 0: no motion blur. The sprite's samples
+  /// along the layer's motion are taken farther apart the faster it moves (PlacementOptions): blurred along
+  /// that direction, and cheaper to draw as it grows [LS97 3.4].
+  double motion_blur = 0;
 };
 
 enum class LayerKind { Geometry };

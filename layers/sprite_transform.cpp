@@ -21,16 +21,18 @@ double in_range(double value, double lo, double hi, double fallback) {
   return std::isnan(value) ? fallback : std::clamp(value, lo, hi);
 }
 
+constexpr double kLeastMotionDensity = 1.0 / 16;
+
 /// The sample lattice of one direction and density, anchored at the display's origin.
 struct Lattice {
   double cos = 1, sin = 0;
-  double density = 1;
+  dvec2 density{1, 1};  ///< along the two axes
   bool axis_aligned() const { return sin == 0; }
   /// Texels are pixels.
-  bool is_flush() const { return axis_aligned() && density == 1; }
+  bool is_flush() const { return axis_aligned() && density == dvec2(1); }
 
   dvec2 operator()(dvec2 p) const {
-    return {density * (cos * p.x + sin * p.y), density * (cos * p.y - sin * p.x)};
+    return {density.x * (cos * p.x + sin * p.y), density.y * (cos * p.y - sin * p.x)};
   }
   RectD bounds(const std::vector<dvec2>& points) const {
     RectD result;
@@ -38,8 +40,9 @@ struct Lattice {
     return result;
   }
   Affine2 screen_from_sprite(int x0, int y0) const {
-    const double c = cos / density, s = sin / density;
-    return {c, 0 - s, c * x0 - s * y0, s, c, s * x0 + c * y0};
+    const dvec2 x_axis = dvec2(cos, sin) / density.x, y_axis = dvec2(0 - sin, cos) / density.y;
+    return {x_axis.x, y_axis.x, x_axis.x * x0 + y_axis.x * y0,
+            x_axis.y, y_axis.y, x_axis.y * x0 + y_axis.y * y0};
   }
 };
 
@@ -47,7 +50,7 @@ double padded_area(const RectD& r) { return (r.width() + 2 * kPadding) * (r.heig
 
 /// The slab direction with the least area [LS97 3.3]; the axes unless that saves the share that was asked
 /// for.
-Lattice choose_direction(const std::vector<dvec2>& shown, const PlacementOptions& options, double density) {
+Lattice choose_direction(const std::vector<dvec2>& shown, const PlacementOptions& options, dvec2 density) {
   const int directions = std::clamp(options.slab_directions, 2, 30);
   const Lattice axes{1, 0, density};
   Lattice best = axes;
@@ -65,11 +68,31 @@ Lattice choose_direction(const std::vector<dvec2>& shown, const PlacementOptions
   return best;
 }
 
-/// The density at which the larger side of `shown` takes `max_px` texels with its margins, if that is less
-/// than its own.
-double density_within(const RectD& shown, double density, int max_px) {
+/// One axis along the motion, at most 45 degrees from the display's, so that the sprite stays upright; the same
+/// for motion there and back.
+Lattice along_motion(dvec2 motion, double density, double ratio) {
+  const dvec2 way = motion / std::hypot(motion.x, motion.y);
+  const bool is_x = std::abs(way.x) >= std::abs(way.y);
+  const dvec2 x_axis = is_x ? way * (way.x < 0 ? -1.0 : 1.0) : dvec2(way.y, -way.x) * (way.y < 0 ? -1.0 : 1.0);
+  return {x_axis.x, x_axis.y + 0, is_x ? dvec2(density * ratio, density) : dvec2(density, density * ratio)};
+}
+
+bool is_blurred(const PlacementOptions& options) {
+  const double length = std::hypot(options.motion.x, options.motion.y);
+  return options.motion_density < 1 && length > 0 && std::isfinite(length);
+}
+
+Lattice choose_lattice(const std::vector<dvec2>& shown, const PlacementOptions& options) {
+  const double density = in_range(options.resolution_scale, 1e-3, 4, PlacementOptions{}.resolution_scale);
+  if (!is_blurred(options)) return choose_direction(shown, options, dvec2(density));
+  return along_motion(options.motion, density, std::max(options.motion_density, kLeastMotionDensity));
+}
+
+/// The factor by which density must fall so that the larger side of `shown` takes at most `max_px` texels with
+/// its margins.
+double reduction_within(const RectD& shown, int max_px) {
   const double larger = std::max(shown.width(), shown.height());
-  return larger + kMargins > max_px ? density * (max_px - kMargins) / larger : density;
+  return larger + kMargins > max_px ? (max_px - kMargins) / larger : 1;
 }
 
 /// Speed (px per frame, ≥ 0) with which content moves in over the low (sign = 1) or high (sign = -1) side of
@@ -170,10 +193,10 @@ SpritePlacement place_sprite(const LayerState& now, const LayerState& soon, cons
   const auto on_display = clip_to_rect(outline, {{0, 0}, dvec2(now.view.display_px)});
   if (on_display.empty()) return placement;  // its bounds touch the display, itself it passes by a corner
 
-  const double asked = in_range(options.resolution_scale, 1e-3, 4, PlacementOptions{}.resolution_scale);
   const int max_px = std::max(options.max_sprite_px, 8);
-  Lattice lattice = choose_direction(on_display, options, asked);
-  lattice.density = density_within(lattice.bounds(on_display), asked, max_px);
+  Lattice lattice = choose_lattice(on_display, options);
+  const double reduction = reduction_within(lattice.bounds(on_display), max_px);
+  lattice.density *= reduction;
 
   const auto drawn_outline = clip_to_rect(outline, grown_display(now, soon, hull, extents));
   const RectD own = lattice.bounds(now.clipped ? continued_beyond_view(outline, now.view) : outline);
@@ -187,7 +210,7 @@ SpritePlacement place_sprite(const LayerState& now, const LayerState& soon, cons
   placement.size_px = {x.hi - x.lo, y.hi - y.lo};
   placement.clipped = {x.cut_lo, x.cut_hi, y.cut_lo, y.cut_hi};
   placement.axis_aligned = lattice.axis_aligned();
-  placement.resolution_reduced = lattice.density < asked;
+  placement.resolution_reduced = reduction < 1;
   return placement;
 }
 

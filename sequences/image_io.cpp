@@ -13,6 +13,7 @@
 namespace talisman::sequences {
 namespace {
 
+constexpr int kPngFilterSub = 0x10;  // PNG_FILTER_SUB of png.h
 /// 16384², 0.8 GB as bytes: more is a damaged or hostile header.
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
 
@@ -80,7 +81,11 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::string& path) {
 void write_png(const std::string& path, const Image8& image) {
   TALISMAN_CHECK_EQ(image.rgb.size(), static_cast<std::size_t>(image.width) * image.height * 3);
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-  spec.attribute("png:compressionLevel", 1);  // a third of the time of level 6 for 17 % more bytes
+  // Run lengths of differences to the left: on frames of the canyon an eighth of the time of the defaults for 9 %
+  // more bytes; level 1 with filters chosen line by line takes twice as long for 8 % more again.
+  spec.attribute("png:compressionLevel", 1);
+  spec.attribute("compression", "rle");
+  spec.attribute("png:filter", kPngFilterSub);
   spec.attribute("oiio:ColorSpace", "sRGB");
   write_text_atomically(path, encode(path, ".png", spec, OIIO::TypeDesc::UINT8, image.rgb.data()));
 }

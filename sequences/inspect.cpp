@@ -39,6 +39,12 @@ const char* name_of(layers::BoundKind kind) {
   return "?";
 }
 
+std::vector<layers::EffectCall> effects_of(const Sequence& s) {
+  layers::RunEffects run;
+  if (s.compression) run.compression_quality = s.compression->quality;
+  return layers::effects_called_for(*s.scene, s.layers.layers, run);
+}
+
 struct Memory {
   std::int64_t mesh_bytes = 0, texture_bytes = 0;
 };
@@ -85,10 +91,11 @@ std::string inspection_text(const Sequence& s) {
   }
   text += line("\n  %zu layers, %d polygons; meshes %.1f MB, textures %.1f MB", s.layers.layers.size(),
                polygons, memory.mesh_bytes / 1e6, memory.texture_bytes / 1e6);
-  if (s.layers.unassigned_parts > 0)
+  if (s.layers.unassigned_parts == 1) text += "; 1 part is in no layer and is not drawn";
+  if (s.layers.unassigned_parts > 1)
     text += line("; %d parts are in no layer and are not drawn", s.layers.unassigned_parts);
   text += "\n\n  effect               called  why\n";
-  for (const layers::EffectCall& call : layers::effects_called_for(*s.scene, s.layers.layers))
+  for (const layers::EffectCall& call : effects_of(s))
     text += line("  %-20s %-6s  %s\n", std::string(layers::name(call.effect)).c_str(),
                  call.called ? "yes" : "no", call.why.c_str());
   return text;
@@ -105,7 +112,7 @@ std::string inspection_json(const Sequence& s) {
                           {"rigid", layer.rigid_node >= 0},
                           {"resolution_scale", layer.preferences.resolution_scale}});
   Json effects = Json::object();
-  for (const layers::EffectCall& call : layers::effects_called_for(*s.scene, s.layers.layers))
+  for (const layers::EffectCall& call : effects_of(s))
     effects[std::string(layers::name(call.effect))] = {{"called", call.called}, {"why", call.why}};
   const Json json = {{"schema", "talisman.inspect/1"},
                      {"sequence", s.name},

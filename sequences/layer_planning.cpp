@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fiducials/fiducials.h"
+#include "sequences/motion_blur.h"
 #include "warp/shade.h"
 
 namespace talisman::sequences {
@@ -23,6 +24,7 @@ SpritePlacement place_layer(const Pipeline& pipeline, const LayerState& now, con
   extents.expected_reuse_frames = expected_reuse * layer.preferences.share_of_expected_motion;
   layers::PlacementOptions placement = pipeline.settings.placement;
   placement.resolution_scale *= layer.preferences.resolution_scale;
+  if (layer.preferences.motion_blur > 0) apply_motion_blur(pipeline, now, placement);
   return layers::place_sprite(now, soon, pipeline.bounds[layer.id].hull, extents, placement);
 }
 
@@ -116,6 +118,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
   else
     assessment.fitted = warp::fit(then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
   assessment.fiducials = fiducials::assess(then, now, placement, matched, assessment.fitted);
+  if (assessment.preferences.motion_blur > 0) judge_motion_blur(pipeline, then, now, assessment);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));

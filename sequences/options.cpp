@@ -97,6 +97,20 @@ double positive(const char* option, double value, double largest) {
   return value;
 }
 
+/// Sprites are compressed where the sequence or the command line asks for it, and there are sprites.
+std::optional<chunker::CompressionOptions> compression_from(const CommandLine& line, const Sequence& sequence,
+                                                            regulator::Policy policy) {
+  const bool has_sprites = policy != regulator::Policy::Direct;
+  if (!line.compression) return has_sprites ? sequence.compression : std::nullopt;
+  const int quality = *line.compression;
+  if (quality < 0 || quality > 100)
+    throw InputError("--compression is " + std::to_string(quality) +
+                     ", must be a quality from 1 to 100, or 0 for none");
+  if (quality == 0) return std::nullopt;
+  if (!has_sprites) throw InputError("--compression needs sprites, but --policy is direct");
+  return chunker::CompressionOptions{quality};
+}
+
 }  // namespace
 
 ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {
@@ -122,6 +136,7 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
         "--shading", line.shading,
         std::array{std::pair{"flat", chunker::Shading::Flat}, std::pair{"gouraud", chunker::Shading::Gouraud},
                    std::pair{"phong", chunker::Shading::Phong}});
+  settings.compression = compression_from(line, sequence, settings.regulator.policy);
   settings.fps = sequence.fps;
   settings.frames = sequence.frames;
 

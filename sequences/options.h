@@ -21,6 +21,7 @@ struct CommandLine {
   std::string policy, warp, bound, shading, format = "png", progress = "auto";
   std::optional<double> geometric_px, cutoff_px, expected_reuse, resolution;
   std::optional<int> hold, lookahead;
+  std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says
   std::optional<std::int64_t> budget_polygons, budget_pixels;
   int threads = 0;  ///< 0: all cores
   bool video = false, overlay = false, quality = false, resume = false;

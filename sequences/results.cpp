@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "regulator/profile.h"
+#include "sequences/compression_json.h"
 
 namespace talisman::sequences {
 
@@ -136,6 +137,7 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
   line.fragments = report.render.fragments;
   line.texture_samples = report.render.texture_samples;
   line.sprite_bytes = report.sprite_bytes;
+  line.compression = report.compression;
   line.render_ms = report.times.render_ms;
   line.composite_ms = report.times.composite_ms;
   line.modelled_ms = regulator::modelled_time(regulator::talisman_1996(), line.polygons_rendered,
@@ -153,6 +155,7 @@ std::string json_of(const FrameLine& line) {
   for (const auto& f : kMeasured) json[f.name] = drawn ? Json(line.*f.field) : Json(nullptr);
   for (const auto& f : kTimes)
     json[f.name] = drawn || f.field == &FrameLine::plan_ms ? Json(line.*f.field) : Json(nullptr);
+  if (line.compression) json["compression"] = compression_json(*line.compression);
   if (line.quality)
     json["quality"] = {{"total", json_of(line.quality->total)},
                        {"reuse", json_of(line.quality->reuse)},
@@ -172,6 +175,7 @@ std::optional<FrameLine> frame_line_from_json(const std::string& text) try {
   for (const auto& f : kTotals) read(f.name, line.*f.field);
   for (const auto& f : kMeasured) read(f.name, line.*f.field);
   for (const auto& f : kTimes) read(f.name, line.*f.field);
+  if (json.contains("compression")) line.compression = compression_from_json(json["compression"]);
   if (json.contains("quality"))
     line.quality =
         FrameQuality{quality_from(json["quality"].at("total")), quality_from(json["quality"].at("reuse")),
@@ -205,7 +209,9 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   summary.policy = regulator::name(settings.regulator.policy);
   summary.warp = warp::name(settings.curve);
   summary.display_px = settings.view.display_px;
-  summary.effects = layers::effects_called_for(pipeline.scene, pipeline.layers.layers);
+  if (settings.compression) summary.compression_quality = settings.compression->quality;
+  summary.effects = layers::effects_called_for(pipeline.scene, pipeline.layers.layers,
+                                               {.compression_quality = summary.compression_quality});
   summary.effect_passes.assign(summary.effects.size(), 0);
   for (const layers::Layer& layer : pipeline.layers.layers)
     summary.layers.push_back({layer.name, static_cast<int>(layer.parts.size()), layer.polygons});

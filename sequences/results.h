@@ -44,6 +44,7 @@ struct FrameLine {
   std::int64_t sprite_bytes = 0;  ///< in the store
   double plan_ms = 0, render_ms = 0, composite_ms = 0, io_ms = 0;
   double modelled_ms = 0;  ///< by the profile talisman-1996
+  std::optional<CompressionReport> compression;
   std::optional<FrameQuality> quality;
 };
 
@@ -74,6 +75,7 @@ struct LayerSummary {
 struct Summary {
   std::string sequence, policy, warp;
   layers::ivec2 display_px{0, 0};
+  std::optional<int> compression_quality;
   bool planned_only = false;
   std::vector<LayerSummary> layers;
   std::vector<layers::EffectCall> effects;

@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/frame_writer.h"
 #include "sequences/line_file.h"
 #include "sequences/overlay.h"
 
@@ -57,6 +58,7 @@ Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& 
           {"placement",
            {s.placement.slab_directions, s.placement.min_rotation_gain, s.placement.resolution_scale}},
           {"shading", static_cast<int>(s.render.shading)},
+          {"compression", s.compression ? s.compression->quality : 0},
           {"format", static_cast<int>(o.format)},
           {"overlay", o.overlay},
           {"quality", o.quality}};
@@ -166,18 +168,29 @@ class Runner {
   bool was_kept(int frame) const { return kept_.count(frame) > 0; }
   Summary& summary() { return summary_; }
 
-  /// Plans frame `frame`; draws and writes it where it is asked for and not there yet.
+  /// Plans frame `frame`; draws it where it is asked for and not there yet, and hands it over to be written.
   void advance(int frame) {
     const bool in_range = frame >= options_.first_frame && frame <= options_.last_frame;
     const auto kept = kept_.find(frame);
     const bool draw = in_range && kept == kept_.end() && prepared_;
-    const FrameReport report = step(pipeline_, state_, frame, draw ? prepared_.get() : nullptr);
+    FrameReport report = step(pipeline_, state_, frame, draw ? prepared_.get() : nullptr);
     if (!in_range) return;
     add_decisions(summary_, report, state_);
     for (const regulator::LayerDecision& decision : report.plan.decisions)
       decisions_->write(json_of(pipeline_, report, decision));
-    summary_.frames.push_back(kept != kept_.end() ? kept->second : finish_frame(report));
+    if (kept != kept_.end())
+      writer_.submit([this, line = kept->second] { add_line(line); });
+    else
+      hand_over(std::move(report));
   }
+
+  /// Waits until every frame that was drawn is complete. Before that the summary has no frames.
+  void complete_frames_at_work() {
+    writer_.finish();
+    summary_.frames = lines_;
+  }
+
+  int frames_complete() const { return complete_; }
 
   void finish(double fps) {
     decisions_->finish();
@@ -187,17 +200,30 @@ class Runner {
   }
 
  private:
-  FrameLine finish_frame(const FrameReport& report) {
+  /// The frame is finished by the writer while the next one is drawn. Jobs are copied, pictures are not.
+  void hand_over(FrameReport report) {
+    std::optional<FrameQuality> quality;
+    if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
+    const auto shared = std::make_shared<const FrameReport>(std::move(report));
+    writer_.submit([this, shared, quality] { finish_frame(*shared, quality); });
+  }
+
+  void finish_frame(const FrameReport& report, const std::optional<FrameQuality>& quality) {
     FrameLine line = line_of(pipeline_, report);
+    line.quality = quality;
     if (prepared_) {
       const auto start = std::chrono::steady_clock::now();
       write_picture(pipeline_, report, options_);
       line.io_ms =
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
-      if (options_.quality) line.quality = judge(pipeline_, report, *prepared_);
     }
     frames_->write(json_of(line));
-    return line;
+    add_line(line);
+  }
+
+  void add_line(const FrameLine& line) {
+    lines_.push_back(line);
+    ++complete_;
   }
 
   const RunOptions& options_;
@@ -207,6 +233,9 @@ class Runner {
   std::unique_ptr<LineFile> decisions_, frames_;
   std::unique_ptr<chunker::PreparedScene> prepared_;
   Summary summary_;
+  std::vector<FrameLine> lines_;   ///< the writer's alone until it has finished
+  std::atomic<int> complete_ = 0;  ///< how many those are
+  FrameWriter writer_;             ///< last: its jobs use all the others
 };
 
 }  // namespace
@@ -218,17 +247,18 @@ RunOutcome run(const Sequence& sequence, const Settings& settings, const RunOpti
                     options.last_frame - options.first_frame + 1, runner.frames_kept());
   RunOutcome outcome;
   outcome.frames_kept = runner.frames_kept();
-  for (int frame = 0; frame <= options.last_frame && !stop; ++frame) {
-    const std::size_t before = runner.summary().frames.size();
-    try {
+  try {
+    for (int frame = 0; frame <= options.last_frame && !stop; ++frame) {
       runner.advance(frame);
-    } catch (const OutputError& error) {
-      if (before == 0 || options.plan_only) throw;
-      throw PartialResult(std::string(error.what()) + "; " + std::to_string(before) +
-                          " frames are complete, the same command with --resume continues");
+      if (frame >= options.first_frame && !runner.was_kept(frame)) progress.advance();
     }
-    const bool new_frame = runner.summary().frames.size() > before;
-    if (new_frame && !runner.was_kept(frame)) progress.advance();
+    runner.complete_frames_at_work();
+  } catch (const OutputError& error) {
+    const int complete = runner.frames_complete();
+    if (complete == 0 || options.plan_only) throw;
+    throw PartialResult(std::string(error.what()) + "; " + std::to_string(complete) +
+                        (complete == 1 ? " frame is" : " frames are") +
+                        " complete, the same command with --resume continues");
   }
   outcome.complete = !stop;
   if (outcome.complete) runner.finish(settings.fps);

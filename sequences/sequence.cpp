@@ -59,9 +59,10 @@ std::vector<layers::LayerSpec> specs_of_model(const layers::Scene& scene, const 
 void finish(Sequence& sequence, BuiltScene built, const std::vector<layers::LayerSpec>& specs) {
   sequence.layers = layers::factor(built.scene, specs);
   sequence.warnings.insert(sequence.warnings.end(), built.warnings.begin(), built.warnings.end());
-  if (sequence.layers.unassigned_parts > 0)
-    sequence.warnings.push_back(std::to_string(sequence.layers.unassigned_parts) +
-                                " parts are taken by no layer and are not drawn");
+  if (const int parts = sequence.layers.unassigned_parts; parts > 0)
+    sequence.warnings.push_back(parts == 1 ? "1 part is taken by no layer and is not drawn"
+                                           : std::to_string(parts) +
+                                                 " parts are taken by no layer and are not drawn");
   sequence.scene = std::make_shared<const layers::Scene>(std::move(built.scene));
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "chunker/compression.h"
 #include "layers/layer.h"
 #include "layers/polyhedron.h"
 #include "layers/sprite_transform.h"
@@ -29,6 +30,7 @@ struct Sequence {
   layers::BoundKind bound = layers::BoundKind::Box8;
   layers::ExtentOptions extents;
   layers::PlacementOptions placement;
+  std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are
   std::optional<double> clip_margin;      ///< View::clip_margin where the file sets it
   regulator::RegulatorOptions regulator;  ///< defaults of the sequence; the command line overrides
   std::string warp = "aff";               ///< curve name

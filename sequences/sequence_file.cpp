@@ -32,6 +32,7 @@ layers::LayerPreferences read_preferences(YamlMap map) {
   map.read("max_update_rate", preferences.max_update_rate, {0, 1, true});
   map.read("share_of_expected_motion", preferences.share_of_expected_motion, kNotNegative);
   map.read("bound_each_part", preferences.bound_each_part);
+  map.read("motion_blur", preferences.motion_blur, {0, 1});
   if (const YamlValue* importance = map.find("importance"))
     preferences.importance = read_importance(importance->map());
   map.finish();
@@ -104,6 +105,13 @@ layers::PlacementOptions read_placement(YamlMap map) {
   return placement;
 }
 
+chunker::CompressionOptions read_compression(YamlMap map) {
+  chunker::CompressionOptions compression;
+  map.read("quality", compression.quality, 1, 100);
+  map.finish();
+  return compression;
+}
+
 void read_film(YamlMap& map, Sequence& sequence) {
   map.need("frames");
   map.read("frames", sequence.frames, 1, kMaxFrames);
@@ -119,6 +127,7 @@ void read_settings(YamlMap& map, Sequence& sequence) {
   if (const YamlValue* v = map.find("regulator")) sequence.regulator = read_regulator(v->map());
   if (const YamlValue* v = map.find("extents")) sequence.extents = read_extents(v->map());
   if (const YamlValue* v = map.find("placement")) sequence.placement = read_placement(v->map());
+  if (const YamlValue* v = map.find("compression")) sequence.compression = read_compression(v->map());
   if (const YamlValue* v = map.find("clip_margin")) sequence.clip_margin = v->number({0, 1});
   if (const YamlValue* v = map.find("bound"))
     sequence.bound = static_cast<layers::BoundKind>(v->choice({"box8", "dop14", "dop26"}));

@@ -109,9 +109,14 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
         chunker::render(prepared, instant != report.frame ? others.at(instant) : now,
                         pipeline.layers.layers[sprite.layer].parts, pipeline.settings.view.display_px,
                         memory.placement, pipeline.settings.render);
-    state.sprites.put(sprite.layer, std::move(result.sprite));
+    const bool is_late = memory.frame_rendered != report.frame;
+    if (pipeline.settings.compression)
+      keep_compressed(sprite.layer, result.sprite, *pipeline.settings.compression, state.compressed,
+                      state.sprites, is_late ? nullptr : &*report.compression);
+    else
+      state.sprites.put(sprite.layer, std::move(result.sprite));
     memory.drawn = true;
-    if (memory.frame_rendered != report.frame) {
+    if (is_late) {
       ++report.late_renders;  // its counters belong to the frame for which it was planned
     } else {
       report.render += result.counters;
@@ -131,6 +136,14 @@ chunker::CompositeResult composite_shown(const Pipeline& pipeline, const std::ve
     placed.push_back(p);
   }
   return chunker::composite(placed, pipeline.settings.view.display_px, pipeline.scene.background);
+}
+
+chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& report,
+                                   const CompressedSprites& compressed) {
+  std::vector<chunker::PlacedCompressed> placed;
+  for (const ShownSprite& sprite : report.shown)
+    placed.push_back({&compressed.at(sprite.layer), sprite.screen_from_sprite});
+  return model_chunk_reads(placed, pipeline.settings.view.display_px);
 }
 
 /// All parts in one pass of the renderer into one display-sized sprite: the picture without layers.
@@ -159,11 +172,13 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
     result = draw_in_one_pass(pipeline, now, prepared, report.render);
     report.times.render_ms = render_watch.ms();
   } else {
+    if (pipeline.settings.compression) report.compression.emplace();
     draw_missing_sprites(pipeline, state, now, prepared, report);
     report.times.render_ms = render_watch.ms();
     const Stopwatch composite_watch;
     result = composite_shown(pipeline, report.shown, state.sprites);
     report.times.composite_ms = composite_watch.ms();
+    if (report.compression) report.compression->cache = chunks_read(pipeline, report, state.compressed);
   }
   report.picture = std::move(result.frame);
   report.composite = result.counters;

@@ -24,6 +24,7 @@
 #include "layers/sprite_transform.h"
 #include "layers/state.h"
 #include "regulator/plan.h"
+#include "sequences/sprite_compression.h"
 #include "warp/fit.h"
 
 namespace talisman::sequences {
@@ -37,6 +38,7 @@ struct Settings {
   layers::ExtentOptions extents;  ///< expected_reuse_frames is the default of policies that do not fix it
   layers::PlacementOptions placement;  ///< resolution_scale is multiplied with the layer's own
   chunker::RenderOptions render;
+  std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are
   double fps = 24;
   int frames = 0;  ///< length of the sequence, however few of its frames are asked for; needed by the
                    ///< policies that look ahead (Lookahead, Oracle), whose runs it ends
@@ -71,7 +73,8 @@ struct CapturedFrame {
 struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline) : memory(pipeline.layers.layers.size()) {}
   std::vector<LayerMemory> memory;
-  chunker::SpriteStore sprites;
+  chunker::SpriteStore sprites;         ///< as the compositor shows them: decompressed if they are compressed
+  CompressedSprites compressed;         ///< empty unless Settings::compression asks for it
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
 };
 
@@ -97,7 +100,8 @@ struct FrameReport {
   chunker::RenderCounters render;     ///< summed over the layers rendered for this frame
   std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
   chunker::CompositeCounters composite;
-  std::int64_t sprite_bytes = 0;  ///< in the store after this frame
+  std::optional<CompressionReport> compression;  ///< of the sprites drawn for this frame, and of its reads
+  std::int64_t sprite_bytes = 0;                 ///< in the store after this frame
   int late_renders = 0;           ///< sprites drawn now that had been planned for an earlier frame
   StageTimes times;
   chunker::Frame picture;  ///< empty when only planned

@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/compression_json.h"
 #include "sequences/results.h"
 
 namespace talisman::sequences {
@@ -113,6 +114,22 @@ std::string quality_rows(const Summary& s) {
   return text;
 }
 
+CompressionReport total_compression(const Summary& s) {
+  CompressionReport sum;
+  for (const FrameLine& line : s.frames)
+    if (line.compression) sum += *line.compression;
+  return sum;
+}
+
+bool has_compression(const Summary& s) { return s.compression_quality && !s.planned_only; }
+
+std::string compression_row(const Summary& s) {
+  const CompressionReport c = total_compression(s);
+  return format("  compression       %.1f : 1 at quality %d, PSNR %.1f dB; cache %.1f %% hits, %s bytes read\n",
+                c.ratio(), *s.compression_quality, c.error.color_psnr_db(), 100 * c.cache.hit_rate(),
+                magnitude(static_cast<double>(c.cache.bytes_read)).c_str());
+}
+
 std::string time_row(const Summary& s) {
   if (s.planned_only) return format("  wall time         plan %.3f s\n", s.total(&FrameLine::plan_ms) / 1e3);
   return format("  wall time         plan %.3f s, render %.2f s, composite %.2f s, files %.2f s\n",
@@ -152,6 +169,10 @@ std::string json_of(const Summary& s) {
                  {"render", measured(s.total(&FrameLine::render_ms))},
                  {"composite", measured(s.total(&FrameLine::composite_ms))},
                  {"io", measured(s.total(&FrameLine::io_ms))}}}};
+  if (has_compression(s)) {
+    json["compression"] = compression_json(total_compression(s));
+    json["compression"]["quality"] = *s.compression_quality;
+  }
   if (has_quality(s)) {
     json["quality"] = json_of(mean_quality(s, &FrameQuality::total));
     json["quality_of_reuse"] = json_of(mean_quality(s, &FrameQuality::reuse));
@@ -180,6 +201,7 @@ std::string table_of(const Summary& s) {
         "  modelled          %.2f ms a frame on talisman-1996\n",
         s.frames.empty() ? 0 : s.total(&FrameLine::modelled_ms) / static_cast<double>(s.frames.size()));
   text += format("  planning          %.2f us per layer and frame\n", s.planning_us_per_layer_and_frame());
+  if (has_compression(s)) text += compression_row(s);
   text += time_row(s);
   if (has_quality(s)) text += "\n" + quality_rows(s);
   return text;
