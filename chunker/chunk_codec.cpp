@@ -113,8 +113,24 @@ struct Colors {
   std::array<Block, kChannels> channel;
 };
 
+/// What nobody sees is free: the mean of what is seen, then drawn towards its neighbours (a few sweeps of
+/// relaxation), so that the silhouette is no edge for the transform.
+void fill_unseen(const std::array<bool, kBlockTexels>& shown, int mean, Block& values) {
+  constexpr int kSweeps = 8;
+  for (int i = 0; i < kBlockTexels; ++i)
+    if (!shown[i]) values[i] = mean;
+  for (int sweep = 0; sweep < kSweeps; ++sweep)
+    for (int i = 0; i < kBlockTexels; ++i) {
+      if (shown[i]) continue;
+      const int x = i % kBlockSide, y = i / kBlockSide;
+      const int left = values[x > 0 ? i - 1 : i], right = values[x + 1 < kBlockSide ? i + 1 : i];
+      const int above = values[y > 0 ? i - kBlockSide : i], below = values[y + 1 < kBlockSide ? i + kBlockSide : i];
+      values[i] = (left + right + above + below + 2) >> 2;
+    }
+}
+
 /// The block's colours as the transform takes them. In a chunk that is not brighter than its alpha they are
-/// straight, and the mean stands where there is none.
+/// straight, and where there is none they are what costs least.
 Colors colors_of(const Texel* texels, bool bound) {
   Colors colors;
   std::array<int, kChannels> sum{};
@@ -130,8 +146,8 @@ Colors colors_of(const Texel* texels, bool bound) {
     for (int k = 0; k < kChannels; ++k) sum[k] += colors.channel[k][i] = values[k];
     ++count;
   }
-  for (int i = 0; i < kBlockTexels; ++i)
-    for (int k = 0; k < kChannels && !shown[i]; ++k) colors.channel[k][i] = sum[k] / std::max(count, 1);
+  if (count == kBlockTexels) return colors;
+  for (int k = 0; k < kChannels; ++k) fill_unseen(shown, sum[k] / std::max(count, 1), colors.channel[k]);
   return colors;
 }
 

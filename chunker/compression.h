@@ -21,7 +21,7 @@
 ///            are Exp-Golomb codes of order 0.
 ///
 /// Colours are coded *straight*: divided by alpha (in the square-root scale of the texel) where there is some,
-/// the block's mean where there is none. So an antialiased edge is no edge for the transform, a decoded texel
+/// what costs least where there is none. So an antialiased edge is no edge for the transform, a decoded texel
 /// is never brighter than its alpha, and a clear texel stays clear. A chunk with a texel brighter than its
 /// alpha (additive layers: alpha 0) is coded as it is, and may come back brighter or darker by the
 /// quantisation. A chunk that would not get smaller than it is (noise) is stored as it is, with the mode that
@@ -42,7 +42,7 @@ namespace talisman::chunker {
 struct CompressionOptions {
   /// 1 … 100; values outside count as the nearest end. Ten more halve the quantisation steps: more bytes, less
   /// error. 100 is off by at most a code value or two; the default gives about 10:1 on typical sprites.
-  int quality = 80;
+  int quality = 85;
   bool operator==(const CompressionOptions&) const = default;
 };
 

@@ -60,7 +60,7 @@ void add_picture_options(CLI::App& command, CommandLine& line) {
   command.add_option("--shading", line.shading, "flat, gouraud or phong");
   command.add_option("--resolution", line.resolution, "sprite texels per display pixel, each axis");
   command.add_option("--compression", line.compression,
-                     "keep sprites compressed: quality 1 to 100 (about 10:1 at 80), 0: none");
+                     "keep sprites compressed: quality 1 to 100 (about 10:1 at 85), 0: none");
   command.add_flag("--video", line.video, "also write video.mp4");
   command.add_flag("--overlay", line.overlay, "draw each sprite's outline, coloured by age");
   command.add_flag("--quality", line.quality,

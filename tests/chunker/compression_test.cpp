@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chunker/compression.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -103,11 +105,13 @@ TEST(BlockTransform, ThereAndBackIsOffByAtMostOne) {
 }
 
 TEST(BlockTransform, TheLargestCoefficientsDoNotOverflow) {
-  // Signs along the way of each basis function add up all 64 terms; a wrapped sum would change its sign.
+  // At the first place all 64 basis functions add up; a sum that wraps would be far from theirs.
   Block F;
   F.fill(kLargestCoefficient);
   const Block f = inverse_transform(F);
-  EXPECT_GT(f[0], 60000);
+  double row = std::sqrt(0.125);
+  for (int k = 1; k < kBlockSide; ++k) row += 0.5 * std::cos(k * M_PI / 16);
+  EXPECT_NEAR(f[0], row * row * kLargestCoefficient / 4, 100);
   for (const int v : f) EXPECT_LT(std::abs(v), 1 << 18);
 }
 
@@ -226,10 +230,11 @@ TEST(CompressChunk, MoreQualityIsMoreBytesAndLessError) {
   }
 }
 
-TEST(CompressChunk, ATypicalChunkIsAboutATenthAtTheDefault) {
-  const auto bytes = compress_chunk(disc_chunk(14), {});
-  EXPECT_LT(bytes.size(), sizeof(Chunk) / 8);
-  EXPECT_GT(psnr(disc_chunk(14), CompressionOptions{}.quality), 45);
+TEST(CompressChunk, AVariedChunkAtTheDefaultIsAFifthAndLooksTheSame) {
+  // Waves of another length in each channel leave the chroma nothing to save; real sprites get smaller.
+  const auto bytes = compress_chunk(disc_chunk(40), {});
+  EXPECT_LT(bytes.size(), sizeof(Chunk) / 5);
+  EXPECT_GT(psnr(disc_chunk(40), CompressionOptions{}.quality), 50);
 }
 
 TEST(CompressChunk, QualityBeyondItsRangeCountsAsTheNearestEnd) {
@@ -358,7 +363,8 @@ TEST(DecompressChunk, RandomAndDamagedBytesNeverCrash) {
     Chunk decoded;
     const DecodeStatus status = decompress_chunk(bytes, decoded);
     ++(status == DecodeStatus::Ok ? accepted : rejected);
-    if (status != DecodeStatus::Ok) ASSERT_EQ(largest_difference(decoded, Chunk{}), 0);
+    if (status == DecodeStatus::Ok) continue;
+    ASSERT_EQ(largest_difference(decoded, Chunk{}), 0) << "seed " << seed;
   }
   EXPECT_GT(rejected, 1000);
   EXPECT_GT(accepted, 0) << "some damage is only another picture";
@@ -410,8 +416,8 @@ TEST(CompressSprite, TexelsOutsideStayClear) {
   const Sprite shown = decompress(compress(sprite, {20}));
   ASSERT_NE(shown.chunk(0, 0), nullptr);
   for (int y = 0; y < kChunkSize; ++y)
-    for (int x = 0; x < kChunkSize; ++x)
-      if (x >= 5 || y >= 7) EXPECT_EQ(shown.chunk(0, 0)->texels[y * kChunkSize + x], Texel{}) << x << " " << y;
+    for (int x = y < 7 ? 5 : 0; x < kChunkSize; ++x)
+      EXPECT_EQ(shown.chunk(0, 0)->texels[y * kChunkSize + x], Texel{}) << x << " " << y;
 }
 
 TEST(CompressSprite, OneTexelSpriteSurvives) {
@@ -455,7 +461,7 @@ TEST(CompressSprite, TheBytesDoNotChange) {
     }
     for (const std::uint8_t b : compress_chunk(chunk, {quality})) hash = (hash ^ b) * 1099511628211ull;
   }
-  EXPECT_EQ(hash, 0x0ull);
+  EXPECT_EQ(hash, 4274664190836436731ull);
 }
 
 }  // namespace
