@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <numeric>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
+#include "layers/check.h"
 #include "sequences/image_io.h"
 #include "sequences/page.h"
 #include "sequences/regulator_plots.h"
@@ -201,8 +201,10 @@ std::string size_text(layers::ivec2 px) { return std::to_string(px.x) + "x" + st
 }  // namespace
 
 std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error) {
-  std::vector<std::size_t> order(cost.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
+  TALISMAN_CHECK_EQ(cost.size(), error.size());
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < cost.size(); ++k)
+    if (!std::isnan(cost[k]) && !std::isnan(error[k])) order.push_back(k);
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
     return cost[a] != cost[b] ? cost[a] < cost[b] : error[a] < error[b];
   });

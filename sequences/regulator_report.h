@@ -38,7 +38,7 @@ struct RegulatorReport {
 };
 
 /// Which of the points are not beaten by another one that is as good in both and better in one; small is
-/// good. Of equal points the first counts.
+/// good. Of equal points the first counts; not-a-number is on no front.
 std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);
 
 std::string settings_csv(const RegulatorReport& report);
