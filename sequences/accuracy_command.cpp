@@ -219,7 +219,15 @@ void write_results(const std::vector<Rung>& rungs, const std::string& dir) {
 }  // namespace
 
 int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
-  if (!options.solvers) throw InputError("accuracy: nothing to measure, rule: --solvers");
+  const bool regulator = !options.regulator.sequence.empty();
+  if (options.solvers == regulator)
+    throw InputError("accuracy: " + std::string(regulator ? "two experiments" : "nothing to measure") +
+                     ", rule: either --solvers or --regulator SEQUENCE");
+  if (regulator) {
+    RegulatorCommandOptions asked = options.regulator;
+    asked.progress = options.progress;
+    return run_regulator_accuracy(asked, options.out, out);
+  }
   if (options.inputs < 1 || options.inputs > 100000)
     throw InputError("--inputs " + std::to_string(options.inputs) + ", rule: 1 … 100000");
   create_folder(options.out);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// `talisman accuracy --solvers`: what accuracy of a warp costs in time.
+/// `talisman accuracy`: what accuracy costs in time. One experiment at a time:
+///
+///   --solvers              of a warp; below
+///   --regulator SEQUENCE   of the whole pipeline; regulator_command.h
 ///
 /// Every rung of the ladder (solver_ladder.h) on the realistic workload with 4, 8, 14, 26 and 64 points:
 /// time, accuracy against the certified optimum, and stability (solver_measure.h). A table on stdout, and in
@@ -16,12 +19,13 @@
 #include <iosfwd>
 #include <string>
 
-#include "sequences/errors.h"
+#include "sequences/regulator_command.h"
 
 namespace talisman::sequences {
 
 struct AccuracyOptions {
-  bool solvers = false;  ///< the one experiment there is; must be asked for
+  bool solvers = false;               ///< one of the two experiments must be asked for
+  RegulatorCommandOptions regulator;  ///< the other: asked for by its sequence
   std::string out = "out/accuracy";
   std::string progress = "auto";  ///< auto, bar, plain or none
   int inputs =

@@ -67,6 +67,7 @@ const char* style_words(SeriesStyle style) {
     case SeriesStyle::Line:
       return "lines";
     case SeriesStyle::Points:
+    case SeriesStyle::Cloud:
       return "points";
     case SeriesStyle::LinePoints:
       return "linespoints";
@@ -82,9 +83,12 @@ constexpr std::array kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56
 constexpr std::array kMarkers = {7, 5, 9, 13, 11, 6, 4};
 
 std::string curve(const PlotSeries& series, std::size_t index) {
+  std::string color = kColors[index % kColors.size()];
+  if (series.style == SeriesStyle::Cloud) color.insert(1, "A0");  // gnuplot: two digits of transparency first
   std::string text = "$data" + std::to_string(index) + " using 1:2 with " + style_words(series.style) +
-                     " linecolor rgb '" + kColors[index % kColors.size()] + "'";
-  if (series.style != SeriesStyle::Points) {
+                     " linecolor rgb '" + color + "'";
+  if (series.style == SeriesStyle::Cloud) text += " pointtype 7 pointsize 0.35";
+  if (series.style != SeriesStyle::Points && series.style != SeriesStyle::Cloud) {
     text += " linewidth 2";
     if (index >= kColors.size()) text += " dashtype " + std::to_string(1 + index / kColors.size());
   }

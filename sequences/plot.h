@@ -19,7 +19,8 @@ struct PlotPoint {
   double x = 0, y = 0;
 };
 
-enum class SeriesStyle { Line, Points, LinePoints, Steps };
+/// Cloud: small translucent points, of which there may be thousands.
+enum class SeriesStyle { Line, Points, LinePoints, Steps, Cloud };
 
 struct PlotSeries {
   std::string name;  ///< in the legend and in the CSV

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What does accuracy cost in time, for the whole pipeline? Every setting of regulator_settings.h on the same
+/// frames.
+///
+/// Plans are made of every frame of the range (and of those before it, as in any run). Pictures are drawn of
+/// some: the range is cut into strata of `every` frames, and in each one frame f and its predecessor f - 1
+/// are drawn, f for quality and time, both for popping. Where f lies in its stratum is
+///
+///   ⌊every · frac(j φ)⌋        j the number of the stratum, φ = (√5 - 1) / 2
+///
+/// so that no period of hold or interpolate stays in step with the sampling. A sprite that was planned for a
+/// frame between is drawn when f - 1 needs it (step.h), outside of all that is timed. every = 1 draws all.
+///
+/// Frame by frame all settings advance side by side; the frame of `reference`, the first of them, is the
+/// truth of the others and is drawn once. Memory: sprites and one picture per setting, numbers of a few
+/// hundred bytes per frame; the oracle besides keeps the states of its layers over the whole sequence.
+///
+/// Times are measured on this machine and differ from run to run; all other numbers are the same in every
+/// run.
+
+#include <vector>
+
+#include "sequences/popping.h"
+#include "sequences/progress.h"
+#include "sequences/quality.h"
+#include "sequences/regulator_settings.h"
+#include "sequences/sequence.h"
+#include "sequences/step.h"
+
+namespace talisman::sequences {
+
+struct ExperimentFrames {
+  int first = 0, last = 0;  ///< inclusive
+  int every = 1;            ///< ≥ 1: one frame of so many is drawn; more is quicker and less certain
+};
+
+/// The frames f that are drawn together with their predecessors, ascending; at least one.
+std::vector<int> sampled_frames(const ExperimentFrames& frames);
+
+/// Milliseconds per frame.
+struct Timing {
+  double mean = 0;    ///< what a frame costs over a run
+  double median = 0;  ///< what most frames cost; 0 ms of rendering where most frames render nothing
+};
+
+struct SettingResult {
+  RegulatorSetting setting;
+  // From the plan of all frames.
+  double mean_update_rate = 0, weighted_update_rate = 0;  ///< 0 … 1; weighted by polygons
+  std::int64_t renders = 0, polygons = 0, pixels = 0, chunks = 0;
+  double mean_geometric_px = 0, max_geometric_px = 0;  ///< of what is displayed
+  Timing plan;
+  // From the frames that are drawn.
+  Timing render, composite;
+  double modelled_ms = 0;  ///< mean, by the profile talisman-1996
+  Quality quality;         ///< mean against `reference`; PSNR of the mean squared error
+  Popping popping;
+  double frame_ms() const { return plan.mean + render.mean + composite.mean; }
+};
+
+/// Polygons of all layers in view, mean over the frames: what `reference` draws.
+double reference_polygons_per_frame(const Sequence& sequence, const Settings& settings,
+                                    const ExperimentFrames& frames);
+
+/// One result per setting, in their order; the first must be `reference` (programmer error otherwise).
+/// `settings` holds all that the settings of the regulator do not say. Cost: per drawn frame and setting one
+/// or two frames of rendering and one comparison (0.1 s at 512 × 512).
+std::vector<SettingResult> measure_regulator(const Sequence& sequence, const Settings& settings,
+                                             const std::vector<RegulatorSetting>& compared,
+                                             const ExperimentFrames& frames, ProgressKind progress);
+
+}  // namespace talisman::sequences

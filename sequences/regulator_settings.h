@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which settings of the regulator are compared? One knob per policy, turned from fine to coarse:
+///
+///   reference                                   every layer, every frame: the truth, and the full price
+///   hold, interpolate      N = 2, 3, 5, 8       frames
+///   threshold, lookahead 16, oracle             0.25 … 8 px in octaves, the same for all three
+///   budget                 5 … 80 %             of the polygons that `reference` draws per frame
+///
+/// All else (fiducials besides the geometric one, warp, extents) is as the sequence says.
+
+#include <string>
+#include <vector>
+
+#include "regulator/plan.h"
+
+namespace talisman::sequences {
+
+struct RegulatorSetting {
+  std::string series;  ///< what belongs together in a plot: "threshold", "lookahead 16"
+  std::string unit;    ///< of `value`: "px", "frames", "%"; empty: there is no knob
+  double value = 0;    ///< the knob
+  regulator::RegulatorOptions options;
+  std::string knob() const;  ///< "4 px", "N 3", "10 %", or empty
+};
+
+inline constexpr int kComparedLookahead = 16;
+
+/// Frames from one render to the next.
+std::vector<int> compared_holds();
+/// Pixels, ascending.
+std::vector<double> compared_thresholds();
+/// Per cent of the reference's polygons, ascending.
+std::vector<double> compared_budgets();
+
+/// All settings, `reference` first. `polygons_per_frame` > 0: mean over the frames of all layers in view.
+std::vector<RegulatorSetting> regulator_settings(const regulator::RegulatorOptions& base,
+                                                 double polygons_per_frame);
+
+}  // namespace talisman::sequences
