@@ -25,10 +25,11 @@ enum class Effect {
   Translucency,       ///< opacity < 1 or a texture with alpha
   Skinning,           ///< some drawn part has a skin
   LayerResolution,    ///< some layer asks for a resolution other than the display's
+  VisibilitySort,     ///< some layers can overlap, and the author's groups do not order them
 };
-inline constexpr std::array kAllEffects = {Effect::Texture,           Effect::MipFilter,    Effect::Lighting,
-                                           Effect::SpecularHighlight, Effect::Translucency, Effect::Skinning,
-                                           Effect::LayerResolution};
+inline constexpr std::array kAllEffects = {Effect::Texture,           Effect::MipFilter,     Effect::Lighting,
+                                           Effect::SpecularHighlight, Effect::Translucency,  Effect::Skinning,
+                                           Effect::LayerResolution,   Effect::VisibilitySort};
 std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
 
 struct EffectCall {
@@ -37,6 +38,10 @@ struct EffectCall {
   std::string why;          ///< "material 'hull' has texture 'gl-14.tga'" or "no material has a texture"
   std::vector<int> layers;  ///< ids of the layers that use it, ascending
 };
+
+/// Are there two layers that the author's groups do not order? Cost:
+/// O(layers).
+bool calls_for_visibility_sort(std::span<const Layer> layers);
 
 /// One entry per effect, in the order of kAllEffects. Parts that no layer takes do not count. Cost: O(parts).
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers);

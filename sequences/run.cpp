@@ -53,6 +53,7 @@ Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& 
           {"uncovered_px", r.uncovered_px},
           {"warp", warp::name(s.curve)},
           {"bound", static_cast<int>(s.bound)},
+          {"cycles", s.cycles == Cycles::Merge ? "merge" : "keep"},
           {"extents", {s.extents.expected_reuse_frames, s.extents.max_growth, s.view.clip_margin}},
           {"placement",
            {s.placement.slab_directions, s.placement.min_rotation_gain, s.placement.resolution_scale}},
@@ -173,25 +174,28 @@ class Runner {
     const bool draw = in_range && kept == kept_.end() && prepared_;
     const FrameReport report = step(pipeline_, state_, frame, draw ? prepared_.get() : nullptr);
     if (!in_range) return;
-    add_decisions(summary_, report, state_);
+    const Pipeline& pipeline = with_aggregates(pipeline_, state_);
+    add_decisions(summary_, pipeline, report, state_);
     for (const regulator::LayerDecision& decision : report.plan.decisions)
-      decisions_->write(json_of(pipeline_, report, decision));
+      if (has_line(pipeline, report, decision.layer)) decisions_->write(json_of(pipeline, report, decision));
     summary_.frames.push_back(kept != kept_.end() ? kept->second : finish_frame(report));
   }
 
   void finish(double fps) {
     decisions_->finish();
     frames_->finish();
-    if (options_.video) write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
+    if (options_.video)
+      write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
     write_text_atomically(options_.out + "/summary.json", json_of(summary_));
   }
 
  private:
   FrameLine finish_frame(const FrameReport& report) {
-    FrameLine line = line_of(pipeline_, report);
+    const Pipeline& pipeline = with_aggregates(pipeline_, state_);
+    FrameLine line = line_of(pipeline, report);
     if (prepared_) {
       const auto start = std::chrono::steady_clock::now();
-      write_picture(pipeline_, report, options_);
+      write_picture(pipeline, report, options_);
       line.io_ms =
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
       if (options_.quality) line.quality = judge(pipeline_, report, *prepared_);

@@ -89,6 +89,7 @@ Sequence load_yaml(const std::string& path) {
     file.settings.file = path;
     fail_at_layer(file, sequence.layers.defect);
   }
+  sequence.explicit_order = resolve_layer_pairs(file.order, sequence.layers.layers);
   return sequence;
 }
 

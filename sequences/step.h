@@ -24,6 +24,7 @@
 #include "layers/sprite_transform.h"
 #include "layers/state.h"
 #include "regulator/plan.h"
+#include "sequences/aggregates.h"
 #include "warp/fit.h"
 
 namespace talisman::sequences {
@@ -37,6 +38,8 @@ struct Settings {
   layers::ExtentOptions extents;  ///< expected_reuse_frames is the default of policies that do not fix it
   layers::PlacementOptions placement;  ///< resolution_scale is multiplied with the layer's own
   chunker::RenderOptions render;
+  std::vector<layers::ExplicitPair> explicit_order;  ///< of layer ids; before geometry
+  Cycles cycles = Cycles::Merge;
   double fps = 24;
   int frames = 0;  ///< length of the sequence, however few of its frames are asked for; needed by the
                    ///< policies that look ahead (Lookahead, Oracle), whose runs it ends
@@ -45,10 +48,13 @@ struct Settings {
 /// What does not change during a run. Keeps references.
 struct Pipeline {
   Pipeline(const layers::Scene& scene, const layers::LayerSet& layers, const Settings& settings);
+  /// The same with more layers behind those of `authored`: aggregates.
+  Pipeline(const Pipeline& authored, const layers::LayerSet& layers, std::vector<layers::LayerBound> bounds);
   const layers::Scene& scene;
   const layers::LayerSet& layers;
   Settings settings;
   std::vector<layers::LayerBound> bounds;  ///< one per layer
+  bool sorts_visibility = false;           ///< the effect visibility_sort is called for
 };
 
 /// What is remembered of one layer: how it was at the instant as of which it was last rendered.
@@ -65,13 +71,15 @@ struct LayerMemory {
 struct CapturedFrame {
   std::vector<layers::LayerState> states;                          ///< by layer id
   std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
+  int generation = -1;  ///< OrderMemory::generation: aggregates that exist since then are not captured yet
 };
 
 /// All that survives a frame.
 struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline) : memory(pipeline.layers.layers.size()) {}
-  std::vector<LayerMemory> memory;
+  std::vector<LayerMemory> memory;  ///< by layer id, aggregates behind the author's layers
   chunker::SpriteStore sprites;
+  OrderMemory order;
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
 };
 
@@ -89,10 +97,12 @@ struct ShownSprite {
 
 struct FrameReport {
   int frame = 0;
+  FrameOrder order;
   regulator::FramePlan plan;
-  std::vector<regulator::LayerAssessment> assessments;  ///< by layer id
-  std::vector<ShownSprite> shown;                       ///< back to front
-  int layers_assessed = 0;                              ///< in view with an old sprite: fitted and judged
+  std::vector<regulator::LayerAssessment>
+      assessments;                    ///< by layer id, aggregates behind the author's layers
+  std::vector<ShownSprite> shown;     ///< back to front
+  int layers_assessed = 0;            ///< in view with an old sprite: fitted and judged
   std::int64_t pixels_reference = 0;  ///< texels that `reference` would render for this frame
   chunker::RenderCounters render;     ///< summed over the layers rendered for this frame
   std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
