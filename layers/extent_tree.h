@@ -4,16 +4,16 @@
 /// Which bodies can be met in the same direction of view? A kd-tree over angular extents [LS97 2.2].
 ///
 /// Seen from the eye e a body covers a set of unit directions u = (p - e) / |p - e|. Its angular extents are
-/// the intervals of u·x, u·y, u·z: a box in the space of directions, which needs no chart of the sphere and no
-/// care behind the eye. Boxes that do not overlap prove that neither body can occlude the other.
+/// the intervals of u·x, u·y, u·z: a box in the space of directions, which needs no chart of the sphere and
+/// no care behind the eye. Boxes that do not overlap prove that neither body can occlude the other.
 ///
 /// Why directions and not positions: possible occluders of a body lie anywhere between it and the eye, so
 /// that a tree over positions would have to visit the whole cone from the eye; in the space of directions the
 /// same question is the overlap of two small boxes. Positions decide afterwards which of two is nearer.
 ///
 /// The tree halves the boxes at the median of their middles along the widest coordinate, and each node keeps
-/// the extents of what is below it. Boxes may change; `refit` then restores the extents, and tells by how much
-/// the tree has become worse than when it was built.
+/// the extents of what is below it. Boxes may change; `refit` then restores the extents, and tells by how
+/// much the tree has become worse than when it was built.
 
 #include <array>
 #include <cmath>
@@ -63,7 +63,7 @@ class ExtentTree {
  private:
   struct Node {
     DirectionBox box;
-    std::int32_t next = 0;  ///< the node after this subtree; nodes lie in the order of the walk
+    std::int32_t next = 0;              ///< the node after this subtree; nodes lie in the order of the walk
     std::int32_t first = 0, count = 0;  ///< of a leaf, in entries_
   };
   void split(std::span<const DirectionBox> boxes, int first, int count);

@@ -29,7 +29,6 @@ struct Known {
   OrderGroup group = OrderGroup::Normal;
   std::vector<int> bodies;
   long frame = -1;  ///< when it was last given
-  int rank = -1;    ///< in the line that this frame starts from
 };
 
 /// Layers that went round in some frame, and stay merged for a while.
@@ -59,7 +58,8 @@ struct VisibilitySorter::State {
   std::vector<OrderEdge> hold() const;
   void forget_old_cycles();
   void explain(VisibilityOrder& out, std::span<const OrderEdge> edges);
-  void explain_component(MergedComponent& component);
+  std::vector<HeldCycle> explain_component(MergedComponent& component,
+                                           std::vector<HeldCycle> held_in_it) const;
   VisibilityOrder arrange(const SortedLine& sorted);
   int group_of(int layer) const;
 
@@ -67,6 +67,7 @@ struct VisibilitySorter::State {
   OcclusionRelations relations;
   std::vector<Known> known;  ///< by layer id
   std::vector<int> line;     ///< layer ids from back to front
+  std::vector<int> rank;     ///< by layer id, in the line that this frame starts from
   std::vector<int> added;    ///< those of this frame that are not in the line yet
   std::vector<HeldCycle> held;
   dvec3 eye{0, 0, 0};
@@ -153,7 +154,8 @@ void VisibilitySorter::State::line_up() {
     line.clear();
     for (const Entry& e : all) line.push_back(e.layer);
   }
-  for (std::size_t i = 0; i < line.size(); ++i) known[line[i]].rank = static_cast<int>(i);
+  rank.resize(known.size());
+  for (std::size_t i = 0; i < line.size(); ++i) rank[line[i]] = static_cast<int>(i);
 }
 
 /// What geometry and the author say, by ranks.
@@ -161,22 +163,21 @@ std::vector<OrderEdge> VisibilitySorter::State::relate(const KeptPairs& kept) co
   std::set<std::pair<int, int>> fixed;
   for (const ExplicitPair& p : kept.pairs) fixed.insert(std::minmax(p.behind, p.front));
   std::vector<OrderEdge> edges;
+  edges.reserve(relations.pairs().size());
   for (const auto& pair : relations.pairs()) {
     if (!pair.first_occludes && !pair.second_occludes) continue;
     const int first = relations.layer_of(pair.first), second = relations.layer_of(pair.second);
     if (!fixed.empty() && fixed.contains(std::minmax(first, second))) continue;
-    if (pair.first_occludes) edges.push_back({known[second].rank, known[first].rank});
-    if (pair.second_occludes) edges.push_back({known[first].rank, known[second].rank});
+    if (pair.first_occludes) edges.push_back({rank[second], rank[first]});
+    if (pair.second_occludes) edges.push_back({rank[first], rank[second]});
   }
   for (const ExplicitPair& p : kept.pairs)
-    if (known[p.behind].group == known[p.front].group)
-      edges.push_back({known[p.behind].rank, known[p.front].rank});
+    if (known[p.behind].group == known[p.front].group) edges.push_back({rank[p.behind], rank[p.front]});
   return edges;
 }
 
 void VisibilitySorter::State::forget_old_cycles() {
-  for (HeldCycle& h : held)
-    std::erase_if(h.layers, [&](int layer) { return group_of(layer) == kAbsent; });
+  for (HeldCycle& h : held) std::erase_if(h.layers, [&](int layer) { return group_of(layer) == kAbsent; });
   std::erase_if(held, [&](const HeldCycle& h) {
     const auto other_group = [&](int layer) { return group_of(layer) != group_of(h.layers[0]); };
     return h.layers.size() < 2 || frame - h.frame > options.release_frames ||
@@ -189,7 +190,7 @@ std::vector<OrderEdge> VisibilitySorter::State::hold() const {
   std::vector<OrderEdge> ring;
   for (const HeldCycle& h : held)
     for (std::size_t k = 0; k < h.layers.size(); ++k)
-      ring.push_back({known[h.layers[k]].rank, known[h.layers[(k + 1) % h.layers.size()]].rank});
+      ring.push_back({rank[h.layers[k]], rank[h.layers[(k + 1) % h.layers.size()]]});
   return ring;
 }
 
@@ -219,14 +220,20 @@ void VisibilitySorter::State::explain(VisibilityOrder& out, std::span<const Orde
   }
   std::vector<int> component_of(line.size(), -1);
   for (std::size_t c = 0; c < out.merged.size(); ++c)
-    for (const int layer : out.merged[c].layers) component_of[known[layer].rank] = static_cast<int>(c);
+    for (const int layer : out.merged[c].layers) component_of[rank[layer]] = static_cast<int>(c);
   for (const OrderEdge& e : edges)
     if (component_of[e.behind] >= 0 && component_of[e.behind] == component_of[e.front])
       out.merged[component_of[e.behind]].relations.push_back({line[e.behind], line[e.front]});
-  for (MergedComponent& component : out.merged) explain_component(component);
+  std::vector<std::vector<HeldCycle>> held_in(out.merged.size());
+  for (HeldCycle& h : held) held_in[component_of[rank[h.layers[0]]]].push_back(std::move(h));
+  held.clear();
+  for (std::size_t c = 0; c < out.merged.size(); ++c)
+    for (HeldCycle& h : explain_component(out.merged[c], std::move(held_in[c]))) held.push_back(std::move(h));
 }
 
-void VisibilitySorter::State::explain_component(MergedComponent& c) {
+/// Returns the cycles to hold: those of this frame, and older ones that are not part of one of these.
+std::vector<HeldCycle> VisibilitySorter::State::explain_component(MergedComponent& c,
+                                                                  std::vector<HeldCycle> held_in_it) const {
   const auto by_layers = [](const ExplicitPair& p, const ExplicitPair& q) {
     return p.behind != q.behind ? p.behind < q.behind : p.front < q.front;
   };
@@ -239,22 +246,22 @@ void VisibilitySorter::State::explain_component(MergedComponent& c) {
   for (const ExplicitPair& p : c.relations) edges.push_back({member(p.behind), member(p.front)});
   const int count = static_cast<int>(c.layers.size());
   const SortedLine truly = sort_line(count, edges);
+  if (truly.cyclic.empty()) {
+    long last = 0;
+    for (const HeldCycle& h : held_in_it) last = std::max(last, h.frame);
+    c.reason = MergedComponent::Reason::Held;
+    c.absent_frames = static_cast<int>(frame - last);
+    return held_in_it;
+  }
   for (const LineRange& range : truly.cyclic) {
     std::vector<int> layers;
     for (int k = 0; k < range.count; ++k) layers.push_back(c.layers[truly.places[range.first + k]]);
-    std::erase_if(held, [&](const HeldCycle& h) { return is_subset(h.layers, layers); });
-    held.push_back({std::move(layers), frame});
-  }
-  if (truly.cyclic.empty()) {
-    long last = -1;
-    for (const HeldCycle& h : held)
-      if (is_subset(h.layers, c.layers)) last = std::max(last, h.frame);
-    c.reason = MergedComponent::Reason::Held;
-    c.absent_frames = static_cast<int>(frame - last);
-    return;
+    std::erase_if(held_in_it, [&](const HeldCycle& h) { return is_subset(h.layers, layers); });
+    held_in_it.push_back({std::move(layers), frame});
   }
   for (const int k : short_cycle(count, edges, kCycleStarts)) c.cycle.push_back(c.layers[k]);
   c.reason = c.cycle.size() == 2 ? MergedComponent::Reason::Interpenetration : MergedComponent::Reason::Cycle;
+  return held_in_it;
 }
 
 namespace {
@@ -286,8 +293,9 @@ VisibilityOrder VisibilitySorter::sort(const dvec3& eye, std::span<const Occlude
   ++s.frame;
   s.eye = finite(eye) ? eye : dvec3{0, 0, 0};
   VisibilityCounters counters;
+  s.relations.place_eye(s.eye);
   s.place(occluders);
-  s.relations.update(s.eye, counters);
+  s.relations.update(counters);
   s.line_up();
   s.forget_old_cycles();
   const KeptPairs kept = keep_pairs(pairs, [&](int layer) { return s.group_of(layer); });

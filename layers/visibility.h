@@ -10,8 +10,8 @@
 ///   A ∩ conv({e} ∪ B) ≠ ∅,
 ///
 /// and it holds in one direction at most: a plane between A and B has the eye on one side, and what is on the
-/// eye's side cannot be occluded across it. With the depth of two convex sets, the least way by which one must
-/// be shifted to leave the other,
+/// eye's side cannot be occluded across it. With the depth of two convex sets, the least way by which one
+/// must be shifted to leave the other,
 ///
 ///   depth(A, C) = min over unit n of ( max a·n - min c·n )        negative: their distance,
 ///
@@ -37,7 +37,8 @@
 /// decides [LS97 2.2, footnote 4]. What the relation leaves open keeps the order of the last frame, which is
 /// the hysteresis against an order that flickers between equals; layers that are new come by the distance of
 /// their centre (far first), then by id. A component that was merged stays merged for another
-/// `release_frames` frames after its cycle has gone; layers that lie between its members are merged with it meanwhile.
+/// `release_frames` frames after its cycle has gone; layers that lie between its members are merged with it
+/// meanwhile.
 ///
 /// How it is kept from frame to frame: layers/visibility.cpp.
 

@@ -9,8 +9,8 @@
 /// - within each, the strongly connected components are put into topological order (Tarjan 1972);
 /// - whatever lies outside stays where it is.
 /// This is sound, because every edge between a stretch and the rest points forward wherever the members of
-/// the stretch stand within it, and complete, because a cycle crosses every gap between its first and its last
-/// place backwards at least once, so that all of it lies in one stretch.
+/// the stretch stand within it, and complete, because a cycle crosses every gap between its first and its
+/// last place backwards at least once, so that all of it lies in one stretch.
 ///
 /// Ties: things that the edges leave open keep their order where possible. The walk starts from the front of
 /// a stretch and moves a thing only to just in front of one that must come before it.
@@ -33,9 +33,9 @@ struct LineRange {
 };
 
 struct SortedLine {
-  std::vector<int> places;         ///< for each new place, from back to front, the old one
-  std::vector<LineRange> cyclic;   ///< the components of more than one, by their new places
-  int sorted = 0;                  ///< places within spoiled stretches
+  std::vector<int> places;        ///< for each new place, from back to front, the old one
+  std::vector<LineRange> cyclic;  ///< the components of more than one, by their new places
+  int sorted = 0;                 ///< places within spoiled stretches
 };
 
 /// Cost: O(count + edges).
@@ -65,10 +65,10 @@ KeptPairs keep_pairs(std::span<const ExplicitPair> pairs, GroupOf group_of) {
   for (const ExplicitPair& p : pairs) {
     const int behind = group_of(p.behind), front = group_of(p.front);
     if (behind == kAbsent || front == kAbsent) continue;
-    const char* broken = p.behind == p.front                  ? "names one layer twice"
-                         : behind > front                     ? "contradicts the groups of the two"
+    const char* broken = p.behind == p.front                       ? "names one layer twice"
+                         : behind > front                          ? "contradicts the groups of the two"
                          : leads_to(kept.pairs, p.front, p.behind) ? "closes a cycle of explicit pairs"
-                                                              : nullptr;
+                                                                   : nullptr;
     if (!broken) {
       kept.pairs.push_back(p);
     } else if (kept.defect.empty()) {

@@ -17,6 +17,9 @@ namespace {
 constexpr double kFramesAhead = 8;
 /// The same for pairs whose motion is not known yet, relative to the smaller body.
 constexpr double kFirstSlack = 0.02;
+/// And a plane is kept while it leaves that share of the slack that it had when it was found: for pairs that
+/// are too close for a lasting one.
+constexpr double kStillGood = 0.5;
 /// The margin of the extents: so many frames of their change, at least that share of their width for new
 /// bodies, at most that share.
 constexpr float kMarginFrames = 12, kFirstMargin = 0.05f, kMostMargin = 0.25f;
@@ -29,7 +32,7 @@ constexpr double kLargest = 1e60;
 /// What one pass over the points of a body finds.
 struct Pass {
   WorldBounds bounds;
-  double step2 = 0;
+  double step2 = 0, reach = 0;
   bool usable = true;
 };
 
@@ -46,14 +49,9 @@ Pass pass_over(std::span<const dvec3> points, std::span<const dvec3> before) {
     bad += p.x * 0 + p.y * 0 + p.z * 0;  // NaN for what is not finite, which min and max may pass over
   }
   pass.bounds = {lo, hi};
-  const double largest = std::max({-lo.x, -lo.y, -lo.z, hi.x, hi.y, hi.z});
-  pass.usable = bad == 0 && !points.empty() && largest <= kLargest;
+  pass.reach = std::max({-lo.x, -lo.y, -lo.z, hi.x, hi.y, hi.z});
+  pass.usable = bad == 0 && !points.empty() && pass.reach <= kLargest;
   return pass;
-}
-
-double largest_coordinate(const WorldBounds& b) {
-  return std::max({std::fabs(b.lo.x), std::fabs(b.lo.y), std::fabs(b.lo.z), std::fabs(b.hi.x),
-                   std::fabs(b.hi.y), std::fabs(b.hi.z)});
 }
 
 struct Plane {
@@ -102,6 +100,7 @@ int OcclusionRelations::add_body(int layer, OrderGroup group) {
   if (free_bodies_.empty()) {
     free_bodies_.push_back(static_cast<int>(bodies_.size()));
     bodies_.emplace_back();
+    layer_of_.push_back(-1);
     travel_.push_back(0);
     widened_.emplace_back();
     mark_.push_back(0);
@@ -109,7 +108,8 @@ int OcclusionRelations::add_body(int layer, OrderGroup group) {
   const int body = free_bodies_.back();
   free_bodies_.pop_back();
   bodies_[body] = Body{};
-  bodies_[body].layer = layer, bodies_[body].group = group;
+  bodies_[body].group = group;
+  layer_of_[body] = layer;
   other_bodies_ = true;
   return body;
 }
@@ -118,51 +118,54 @@ void OcclusionRelations::remove_body(int body) {
   while (!bodies_[body].pairs.empty()) drop_pair(bodies_[body].pairs.back());
   bodies_[body] = Body{};
   widened_[body] = DirectionBox{};
+  layer_of_[body] = -1;
   free_bodies_.push_back(body);
   other_bodies_ = true;
+}
+
+void OcclusionRelations::place_eye(const dvec3& eye) {
+  eye_step_ = seen_before_ ? glm::length(eye - eye_) : 0;
+  eye_travel_ += eye_step_;
+  eye_ = eye, seen_before_ = true;
 }
 
 void OcclusionRelations::place_body(int body, std::span<const dvec3> points) {
   Body& b = bodies_[body];
   const bool anew = b.points.size() != points.size();
   const Pass pass = pass_over(points, anew ? points : std::span<const dvec3>(b.points));
-  if (!pass.usable) {
+  const DirectionBox before = b.extents;
+  if (pass.usable) {
+    b.placed_anew = b.placed_anew || anew;
+    b.points.assign(points.begin(), points.end());
+    b.bounds = pass.bounds, b.reach = pass.reach;
+    const dvec3 d = b.bounds.hi - b.bounds.lo;
+    b.size = std::max({d.x, d.y, d.z});
+    b.step = std::sqrt(pass.step2);
+    travel_[body] += b.step;
+    b.extents = directions_to(eye_, b.bounds.lo, b.bounds.hi);
+  } else {
+    b.placed_anew = true;
     b.points.clear();
-    b.bounds = WorldBounds{};
-    return;
+    b.bounds = WorldBounds{}, b.extents = DirectionBox{};
   }
-  b.placed_anew = b.placed_anew || anew;
-  b.points.assign(points.begin(), points.end());
-  b.bounds = pass.bounds;
-  const dvec3 d = b.bounds.hi - b.bounds.lo;
-  b.size = std::max({d.x, d.y, d.z});
-  b.step = std::sqrt(pass.step2);
-  travel_[body] += b.step;
+  if (b.extents.empty() ? !widened_[body].empty() : b.placed_anew || !contains(widened_[body], b.extents))
+    widen(body, before);
 }
 
-/// True if the body is where the tree has it; otherwise it gets a new place there.
-bool OcclusionRelations::same_extents(int body) {
-  Body& b = bodies_[body];
-  if (b.points.empty()) {
-    const bool same = widened_[body].empty();
-    b.placed_anew = true;
-    b.extents = widened_[body] = DirectionBox{};
-    other_bodies_ = other_bodies_ || !same;
-    return same;
-  }
-  const DirectionBox now = directions_to(eye_, b.bounds.lo, b.bounds.hi);
-  const DirectionBox before = b.extents;
-  b.extents = now;
-  if (!b.placed_anew && contains(widened_[body], now)) return true;
-  const float most = kMostMargin * width(now);
-  const float margin = before.empty() ? kFirstMargin * width(now)
-                                      : std::min(most, kMarginFrames * largest_change(before, now));
-  other_bodies_ = other_bodies_ || widened_[body].empty();
+/// Gives the body a new place in the tree, `before` being its extents in the last frame.
+void OcclusionRelations::widen(int body, const DirectionBox& before) {
+  to_look_up_.push_back(body);
+  const DirectionBox& now = bodies_[body].extents;
+  other_bodies_ = other_bodies_ || widened_[body].empty() || now.empty();
+  widened_[body] = now;
+  if (now.empty()) return;
+  const float margin = before.empty()
+                           ? kFirstMargin * width(now)
+                           : std::min(kMostMargin * width(now), kMarginFrames * largest_change(before, now));
   for (int k = 0; k < 3; ++k) {
-    widened_[body].lo[k] = now.lo[k] - margin;
-    widened_[body].hi[k] = now.hi[k] + margin;
+    widened_[body].lo[k] -= margin;
+    widened_[body].hi[k] += margin;
   }
-  return false;
 }
 
 void OcclusionRelations::add_pair(int first, int second) {
@@ -174,7 +177,7 @@ void OcclusionRelations::add_pair(int first, int second) {
   const int pair = free_pairs_.back();
   free_pairs_.pop_back();
   pairs_[pair] = Pair{first, second};
-  witnesses_[pair] = Witness{};
+  witnesses_[pair] = Witnesses{};
   bodies_[first].pairs.push_back(pair);
   bodies_[second].pairs.push_back(pair);
 }
@@ -197,76 +200,77 @@ void OcclusionRelations::look_up(int body, VisibilityCounters& counters) {
       drop_pair(pair);
     else
       mark_[other] = mark_count_;
-    if (b.placed_anew && pairs_[pair].first >= 0) pairs_[pair].term = -1;
+    if (!b.placed_anew || pairs_[pair].first < 0) continue;
+    pairs_[pair].term = -1;
+    witnesses_[pair] = Witnesses{};
   }
   if (widened_[body].empty()) return;
   ++counters.queries;
   found_.clear();
   tree_.query(widened_[body], widened_, found_);
   for (const int other : found_)
-    if (mark_[other] != mark_count_ && bodies_[other].group == b.group && bodies_[other].layer != b.layer)
+    if (mark_[other] != mark_count_ && bodies_[other].group == b.group && layer_of_[other] != layer_of_[body])
       add_pair(body, other);
 }
 
-double OcclusionRelations::tolerance(const Body& a, const Body& b) const {
-  const double coordinates = std::max({largest_coordinate(a.bounds), largest_coordinate(b.bounds),
-                                       std::fabs(eye_.x), std::fabs(eye_.y), std::fabs(eye_.z)});
-  return touch_ * std::min(a.size, b.size) + kRounding * coordinates;
-}
-
-OcclusionRelations::Answer OcclusionRelations::occludes(const Body& front, const Body& behind, dvec3& plane,
-                                                        VisibilityCounters& counters, bool& exact) const {
-  const double t = tolerance(front, behind);
+OcclusionRelations::Answer OcclusionRelations::occludes(const Body& front, const Body& behind,
+                                                        Witness& witness, VisibilityCounters& counters,
+                                                        bool& exact) const {
+  const double eye_reach = std::max({std::fabs(eye_.x), std::fabs(eye_.y), std::fabs(eye_.z)});
+  const double smaller = std::min(front.size, behind.size);
+  const double t = touch_ * smaller + kRounding * std::max({front.reach, behind.reach, eye_reach});
   const double steps = front.step + behind.step + eye_step_;
-  const double wanted = std::max(kFramesAhead * steps, kFirstSlack * std::min(front.size, behind.size));
+  double wanted = std::max(kFramesAhead * steps, kFirstSlack * smaller);
   const Plane axis = axis_plane(front.bounds, behind.bounds, eye_);
   if (t - axis.h >= wanted) return {false, t - axis.h};
   exact = true;
+  dvec3& plane = witness.plane;
   if (plane != dvec3{0, 0, 0}) {
     const double low = largest_along(plane, front.points);
     const double high = -std::max(largest_along(-plane, behind.points), glm::dot(-plane, eye_));
+    wanted = std::min(wanted, kStillGood * witness.found_slack);
     if (t - (low - high) >= wanted) return {false, t - (low - high)};
   }
   const DepthDecision d = decide_depth({front.points}, {behind.points, &eye_}, t, plane);
-  plane = d.normal;
   if (!d.decided) ++counters.undecided;
+  plane = d.normal;
+  witness.found_slack = d.deeper ? HUGE_VAL : t - d.upper;
   return d.deeper ? Answer{true, d.lower - t} : Answer{false, t - d.upper};
 }
 
-void OcclusionRelations::test(int index, VisibilityCounters& counters) {
+void OcclusionRelations::test(int index, double travel, VisibilityCounters& counters) {
   Pair& pair = pairs_[index];
   const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
+  auto& [first, second] = witnesses_[index];
   bool exact = false;
-  const Answer first = occludes(a, b, witnesses_[index].first, counters, exact);
-  const Answer second = occludes(b, a, witnesses_[index].second, counters, exact);
+  const auto renew = [&](const Body& front, const Body& behind, Witness& witness, bool& occluded) {
+    if (travel <= witness.term) return;
+    const Answer answer = occludes(front, behind, witness, counters, exact);
+    // The tolerance itself follows the bodies' sizes, by twice their steps at most.
+    witness.term = travel + std::max(0.0, answer.slack) * 0.999 / (1 + 2 * touch_);
+    occluded = answer.occludes;
+  };
+  renew(a, b, first, pair.first_occludes);
+  renew(b, a, second, pair.second_occludes);
   counters.exact_tests += exact;
-  pair.first_occludes = first.occludes, pair.second_occludes = second.occludes;
-  // The tolerance itself follows the bodies' sizes, by twice their steps at most.
-  const double slack = std::max(0.0, std::min(first.slack, second.slack)) * 0.999 / (1 + 2 * touch_);
-  pair.term = travel_[pair.first] + travel_[pair.second] + eye_travel_ + slack;
+  pair.term = std::min(first.term, second.term);
 }
 
-void OcclusionRelations::update(const dvec3& eye, VisibilityCounters& counters) {
-  eye_step_ = seen_before_ ? glm::length(eye - eye_) : 0;
-  eye_travel_ += eye_step_;
-  eye_ = eye, seen_before_ = true;
-  looked_up_.clear();
-  for (int body = 0; body < static_cast<int>(bodies_.size()); ++body) {
-    if (bodies_[body].layer < 0) continue;
-    ++counters.bodies;
-    if (!same_extents(body)) looked_up_.push_back(body);
-  }
-  if (other_bodies_ || (!looked_up_.empty() && tree_.refit(widened_) > kWorn)) tree_.build(widened_);
+void OcclusionRelations::update(VisibilityCounters& counters) {
+  counters.bodies += static_cast<int>(bodies_.size() - free_bodies_.size());
+  if (other_bodies_ || (!to_look_up_.empty() && tree_.refit(widened_) > kWorn)) tree_.build(widened_);
   other_bodies_ = false;
-  for (const int body : looked_up_) look_up(body, counters);
-  for (const int body : looked_up_) bodies_[body].placed_anew = bodies_[body].points.empty();
+  for (const int body : to_look_up_) look_up(body, counters);
+  for (const int body : to_look_up_) bodies_[body].placed_anew = bodies_[body].points.empty();
+  to_look_up_.clear();
   for (int i = 0; i < static_cast<int>(pairs_.size()); ++i) {
     const Pair& pair = pairs_[i];
     if (pair.first < 0) continue;
-    ++counters.pairs;
-    if (travel_[pair.first] + travel_[pair.second] + eye_travel_ > pair.term) test(i, counters);
-    counters.edges += pairs_[i].first_occludes + pairs_[i].second_occludes;
+    const double travel = travel_[pair.first] + travel_[pair.second] + eye_travel_;
+    if (travel > pair.term) test(i, travel, counters);
+    counters.edges += pair.first_occludes + pair.second_occludes;
   }
+  counters.pairs += static_cast<int>(pairs_.size() - free_pairs_.size());
 }
 
 }  // namespace talisman::layers

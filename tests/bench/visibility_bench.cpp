@@ -23,16 +23,18 @@
 namespace talisman::layers {
 namespace {
 
-/// Boxes with half-extents 0.2 … 0.8 in a shell around the eye whose radius grows as √n: the number of bodies
-/// per solid angle and their angular size then change together, and the depth complexity stays the same.
+/// Boxes with half-extents 0.2 … 0.8 around the eye, in a ball whose radius grows as √n: the number of bodies
+/// per solid angle and their angular size then change together, and the depth complexity stays about 1. They
+/// start apart from each other.
 class Swarm {
  public:
-  Swarm(int count, double motion) : radius_(1.1 * std::sqrt(count) + 2) {
+  Swarm(int count, double motion) : radius_(0.3 * std::sqrt(count) + 3) {
     tests::Dice dice(1);
     for (int i = 0; i < count; ++i) {
       Body b;
       b.half = glm::abs(dice.in_cube(0.6)) + 0.2;
-      b.centre = dice.direction() * (radius_ * std::cbrt(dice.uniform(0.2, 1)));
+      do b.centre = dice.direction() * (radius_ * std::cbrt(dice.uniform(0.1, 1)));
+      while (crowded(b));
       b.velocity = dice.direction() * motion;
       b.axis = dice.direction();
       b.rate = dice.uniform(-motion, motion);
@@ -64,6 +66,15 @@ class Swarm {
     dvec3 half, centre, velocity, axis;
     double rate;
   };
+  bool crowded(const Body& b) const {
+    for (const Body& other : bodies_) {
+      const dvec3 d = b.centre - other.centre;
+      const double room = 0.8 * (glm::length(b.half) + glm::length(other.half));
+      if (glm::dot(d, d) < room * room) return true;
+    }
+    return false;
+  }
+
   double radius_, motion_ = 0;
   dvec3 eye_{0, 0, 0};
   std::vector<Body> bodies_;
