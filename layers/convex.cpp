@@ -103,10 +103,17 @@ bool nearest_on_tetrahedron(Simplex& s, dvec3& nearest) {
 bool nearest_on(Simplex& s, dvec3& nearest) {
   const auto p = s.p;
   switch (s.size) {
-    case 1: nearest = p[0]; return true;
-    case 2: nearest = nearest_on_segment(s, p[0], p[1]); return true;
-    case 3: nearest = nearest_on_triangle(s, p[0], p[1], p[2]); return true;
-    default: return nearest_on_tetrahedron(s, nearest);
+    case 1:
+      nearest = p[0];
+      return true;
+    case 2:
+      nearest = nearest_on_segment(s, p[0], p[1]);
+      return true;
+    case 3:
+      nearest = nearest_on_triangle(s, p[0], p[1], p[2]);
+      return true;
+    default:
+      return nearest_on_tetrahedron(s, nearest);
   }
 }
 
@@ -115,8 +122,8 @@ class Polytope {
  public:
   struct Face {
     std::array<int, 3> v;
-    dvec3 normal{0, 0, 0};
-    double distance = HUGE_VAL;  ///< signed, of the origin below the face; HUGE_VAL: a face without area
+    double distance;  ///< signed, of the origin below the face; HUGE_VAL: a face without area
+    dvec3 normal;
   };
 
   /// `p` are four points that are not in one plane.
@@ -157,7 +164,7 @@ class Polytope {
   static constexpr int kVertices = 4 + kMaxExpand, kFaces = 2 * kVertices, kEdges = 3 * kFaces;
 
   void add_face(int a, int b, int c) {
-    Face f{{a, b, c}};
+    Face f{{a, b, c}, HUGE_VAL, {0, 0, 0}};
     const dvec3 n = glm::cross(vertices_[b] - vertices_[a], vertices_[c] - vertices_[a]);
     const double length = glm::length(n);
     if (length > 0) f.normal = n / length, f.distance = glm::dot(f.normal, vertices_[a]);
@@ -182,8 +189,7 @@ class Polytope {
 
 class DepthQuery {
  public:
-  DepthQuery(const ConvexSet& a, const ConvexSet& c, double tolerance)
-      : a_(a), c_(c), tolerance_(tolerance) {
+  DepthQuery(const ConvexSet& a, const ConvexSet& c, double tolerance) : a_(a), c_(c), tolerance_(tolerance) {
     result_.upper = HUGE_VAL, result_.lower = -HUGE_VAL;
   }
 
@@ -230,8 +236,8 @@ class DepthQuery {
     return false;
   }
 
-  /// Four points of A - C that are not in one plane, from what the simplex has. False where A - C is flat; the
-  /// directions that show it have then bounded the depth by rounding.
+  /// Four points of A - C that are not in one plane, from what the simplex has. False where A - C is flat;
+  /// the directions that show it have then bounded the depth by rounding.
   bool complete() {
     if (simplex_.size == 1 && !widen(axes())) return false;
     if (simplex_.size == 2) {

@@ -1,160 +1,329 @@
 // SPDX-License-Identifier: Apache-2.0
+//
+// One frame: the layers' bodies are placed, the relations between them brought up to date
+// (layers/visibility_relations.h), the line of last frame is taken as the start and put in order again where
+// relations have changed (layers/visibility_order.h); what is cyclic, or was until lately, is merged.
 #include "layers/visibility.h"
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
-#include <map>
 #include <set>
+#include <utility>
 
 #include <glm/geometric.hpp>
 
 #include "layers/check.h"
-#include "layers/convex.h"
+#include "layers/visibility_order.h"
+#include "layers/visibility_relations.h"
 
 namespace talisman::layers {
 
-struct VisibilitySorter::State {
-  VisibilityOptions options;
-  std::vector<int> last_order;
-  std::map<std::vector<int>, int> held;  // component -> frames without a cycle
+namespace {
+
+/// Where the search for a short cycle starts; more would not make the report clearer.
+constexpr int kCycleStarts = 64;
+
+/// A layer that has been seen, by its id.
+struct Known {
+  bool present = false;
+  OrderGroup group = OrderGroup::Normal;
+  std::vector<int> bodies;
+  long frame = -1;  ///< when it was last given
 };
 
-VisibilitySorter::VisibilitySorter(const VisibilityOptions& options)
-    : state_(std::make_unique<State>(State{options, {}, {}})) {}
-VisibilitySorter::VisibilitySorter(const VisibilitySorter& o) : state_(std::make_unique<State>(*o.state_)) {}
-VisibilitySorter::VisibilitySorter(VisibilitySorter&&) noexcept = default;
-VisibilitySorter& VisibilitySorter::operator=(VisibilitySorter o) noexcept {
-  state_ = std::move(o.state_);
-  return *this;
+/// Layers that went round in some frame, and stay merged for a while.
+struct HeldCycle {
+  std::vector<int> layers;  ///< ascending
+  long frame = 0;           ///< when they last did
+};
+
+bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+bool is_subset(const std::vector<int>& inner, const std::vector<int>& outer) {
+  return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
 }
-VisibilitySorter::~VisibilitySorter() = default;
+
+}  // namespace
+
+struct VisibilitySorter::State {
+  explicit State(const VisibilityOptions& o)
+      : options(o), relations(std::isfinite(o.touch) ? std::clamp(o.touch, 0.0, 0.5) : 0.0) {}
+
+  // Each reads and completes what the one before has left; sort() is the chapter.
+  void place(std::span<const Occluder> occluders);
+  void place_layer(const Occluder& occluder);
+  void line_up();
+  double distance(int layer) const;
+  std::vector<OrderEdge> relate(const KeptPairs& kept) const;
+  std::vector<OrderEdge> hold() const;
+  void forget_old_cycles();
+  void explain(VisibilityOrder& out, std::span<const OrderEdge> edges);
+  std::vector<HeldCycle> explain_component(MergedComponent& component,
+                                           std::vector<HeldCycle> held_in_it) const;
+  VisibilityOrder arrange(const SortedLine& sorted);
+  int group_of(int layer) const;
+
+  VisibilityOptions options;
+  OcclusionRelations relations;
+  std::vector<Known> known;  ///< by layer id
+  std::vector<int> line;     ///< layer ids from back to front
+  std::vector<int> rank;     ///< by layer id, in the line that this frame starts from
+  std::vector<int> added;    ///< those of this frame that are not in the line yet
+  std::vector<HeldCycle> held;
+  dvec3 eye{0, 0, 0};
+  long frame = 0;
+};
+
+int VisibilitySorter::State::group_of(int layer) const {
+  if (layer < 0 || layer >= static_cast<int>(known.size()) || !known[layer].present) return kAbsent;
+  return static_cast<int>(known[layer].group);
+}
+
+/// A layer whose group changes leaves the line and enters it again.
+void VisibilitySorter::State::place_layer(const Occluder& occluder) {
+  Known& layer = known[occluder.layer];
+  TALISMAN_CHECK_LT(layer.frame, frame);
+  layer.frame = frame;
+  if (layer.present && layer.group != occluder.group) {
+    for (const int body : layer.bodies) relations.remove_body(body);
+    layer.bodies.clear();
+    std::erase(line, occluder.layer);
+    layer.present = false;
+  }
+  if (!layer.present) added.push_back(occluder.layer);
+  layer.present = true, layer.group = occluder.group;
+  while (layer.bodies.size() > occluder.bodies.size()) {
+    relations.remove_body(layer.bodies.back());
+    layer.bodies.pop_back();
+  }
+  while (layer.bodies.size() < occluder.bodies.size())
+    layer.bodies.push_back(relations.add_body(occluder.layer, occluder.group));
+  for (std::size_t k = 0; k < layer.bodies.size(); ++k)
+    relations.place_body(layer.bodies[k], occluder.bodies[k]);
+}
+
+void VisibilitySorter::State::place(std::span<const Occluder> occluders) {
+  int largest = -1;
+  for (const Occluder& o : occluders) {
+    TALISMAN_CHECK_GE(o.layer, 0);
+    largest = std::max(largest, o.layer);
+  }
+  if (largest >= static_cast<int>(known.size())) known.resize(largest + 1);
+  added.clear();
+  for (const Occluder& o : occluders) place_layer(o);
+  if (line.size() + added.size() == occluders.size()) return;
+  std::erase_if(line, [&](int id) {
+    Known& layer = known[id];
+    if (layer.frame == frame) return false;
+    for (const int body : layer.bodies) relations.remove_body(body);
+    layer = Known{};
+    return true;
+  });
+}
+
+/// Of the middle of all its bodies; infinite for a layer without any.
+double VisibilitySorter::State::distance(int layer) const {
+  WorldBounds all;
+  for (const int body : known[layer].bodies) {
+    const WorldBounds& b = relations.bounds(body);
+    if (b.empty()) continue;
+    all.lo = glm::min(all.lo, b.lo), all.hi = glm::max(all.hi, b.hi);
+  }
+  return all.empty() ? HUGE_VAL : glm::length((all.lo + all.hi) * 0.5 - eye);
+}
+
+/// Puts the new layers into last frame's line: each before the first layer of its group that is nearer.
+void VisibilitySorter::State::line_up() {
+  struct Entry {
+    int layer;
+    OrderGroup group;
+    double distance;
+  };
+  const auto entry = [&](int layer) { return Entry{layer, known[layer].group, distance(layer)}; };
+  const auto before = [](const Entry& a, const Entry& b) {
+    return a.group != b.group ? a.group < b.group : a.distance > b.distance;
+  };
+  if (!added.empty()) {
+    std::vector<Entry> fresh, old, all;
+    for (const int layer : added) fresh.push_back(entry(layer));
+    for (const int layer : line) old.push_back(entry(layer));
+    std::sort(fresh.begin(), fresh.end(), [&](const Entry& a, const Entry& b) {
+      return before(a, b) || (!before(b, a) && a.layer < b.layer);
+    });
+    std::merge(old.begin(), old.end(), fresh.begin(), fresh.end(), std::back_inserter(all), before);
+    line.clear();
+    for (const Entry& e : all) line.push_back(e.layer);
+  }
+  rank.resize(known.size());
+  for (std::size_t i = 0; i < line.size(); ++i) rank[line[i]] = static_cast<int>(i);
+}
+
+/// What geometry and the author say, by ranks.
+std::vector<OrderEdge> VisibilitySorter::State::relate(const KeptPairs& kept) const {
+  std::set<std::pair<int, int>> fixed;
+  for (const ExplicitPair& p : kept.pairs) fixed.insert(std::minmax(p.behind, p.front));
+  std::vector<OrderEdge> edges;
+  edges.reserve(relations.pairs().size());
+  for (const auto& pair : relations.pairs()) {
+    if (!pair.first_occludes && !pair.second_occludes) continue;
+    const int first = relations.layer_of(pair.first), second = relations.layer_of(pair.second);
+    if (!fixed.empty() && fixed.contains(std::minmax(first, second))) continue;
+    if (pair.first_occludes) edges.push_back({rank[second], rank[first]});
+    if (pair.second_occludes) edges.push_back({rank[first], rank[second]});
+  }
+  for (const ExplicitPair& p : kept.pairs)
+    if (known[p.behind].group == known[p.front].group) edges.push_back({rank[p.behind], rank[p.front]});
+  return edges;
+}
+
+void VisibilitySorter::State::forget_old_cycles() {
+  for (HeldCycle& h : held) std::erase_if(h.layers, [&](int layer) { return group_of(layer) == kAbsent; });
+  std::erase_if(held, [&](const HeldCycle& h) {
+    const auto other_group = [&](int layer) { return group_of(layer) != group_of(h.layers[0]); };
+    return h.layers.size() < 2 || frame - h.frame > options.release_frames ||
+           std::any_of(h.layers.begin(), h.layers.end(), other_group);
+  });
+}
+
+/// A ring through the layers of each held cycle keeps them one component.
+std::vector<OrderEdge> VisibilitySorter::State::hold() const {
+  std::vector<OrderEdge> ring;
+  for (const HeldCycle& h : held)
+    for (std::size_t k = 0; k < h.layers.size(); ++k)
+      ring.push_back({rank[h.layers[k]], rank[h.layers[(k + 1) % h.layers.size()]]});
+  return ring;
+}
+
+/// The layers of the sorted line, merged ones by their ids.
+VisibilityOrder VisibilitySorter::State::arrange(const SortedLine& sorted) {
+  VisibilityOrder out;
+  for (const int place : sorted.places) out.order.push_back(line[place]);
+  const int count = static_cast<int>(out.order.size());
+  auto cyclic = sorted.cyclic.begin();
+  for (int i = 0; i < count;) {
+    const bool merged = cyclic != sorted.cyclic.end() && cyclic->first == i;
+    const int size = merged ? (cyclic++)->count : 1;
+    const auto first = out.order.begin() + i;
+    std::sort(first, first + size);
+    out.groups_back_to_front.emplace_back(first, first + size);
+    if (merged) out.merged.emplace_back().layers = out.groups_back_to_front.back();
+    i += size;
+  }
+  return out;
+}
+
+/// Fills in the relations within each merged component, and why it is one; takes note of the cycles.
+void VisibilitySorter::State::explain(VisibilityOrder& out, std::span<const OrderEdge> edges) {
+  if (out.merged.empty()) {
+    held.clear();
+    return;
+  }
+  std::vector<int> component_of(line.size(), -1);
+  for (std::size_t c = 0; c < out.merged.size(); ++c)
+    for (const int layer : out.merged[c].layers) component_of[rank[layer]] = static_cast<int>(c);
+  for (const OrderEdge& e : edges)
+    if (component_of[e.behind] >= 0 && component_of[e.behind] == component_of[e.front])
+      out.merged[component_of[e.behind]].relations.push_back({line[e.behind], line[e.front]});
+  std::vector<std::vector<HeldCycle>> held_in(out.merged.size());
+  for (HeldCycle& h : held) held_in[component_of[rank[h.layers[0]]]].push_back(std::move(h));
+  held.clear();
+  for (std::size_t c = 0; c < out.merged.size(); ++c)
+    for (HeldCycle& h : explain_component(out.merged[c], std::move(held_in[c]))) held.push_back(std::move(h));
+}
+
+/// Returns the cycles to hold: those of this frame, and older ones that are not part of one of these.
+std::vector<HeldCycle> VisibilitySorter::State::explain_component(MergedComponent& c,
+                                                                  std::vector<HeldCycle> held_in_it) const {
+  const auto by_layers = [](const ExplicitPair& p, const ExplicitPair& q) {
+    return p.behind != q.behind ? p.behind < q.behind : p.front < q.front;
+  };
+  std::sort(c.relations.begin(), c.relations.end(), by_layers);
+  c.relations.erase(std::unique(c.relations.begin(), c.relations.end()), c.relations.end());
+  const auto member = [&](int layer) {
+    return static_cast<int>(std::lower_bound(c.layers.begin(), c.layers.end(), layer) - c.layers.begin());
+  };
+  std::vector<OrderEdge> edges;
+  for (const ExplicitPair& p : c.relations) edges.push_back({member(p.behind), member(p.front)});
+  const int count = static_cast<int>(c.layers.size());
+  const SortedLine truly = sort_line(count, edges);
+  if (truly.cyclic.empty()) {
+    long last = 0;
+    for (const HeldCycle& h : held_in_it) last = std::max(last, h.frame);
+    c.reason = MergedComponent::Reason::Held;
+    c.absent_frames = static_cast<int>(frame - last);
+    return held_in_it;
+  }
+  for (const LineRange& range : truly.cyclic) {
+    std::vector<int> layers;
+    for (int k = 0; k < range.count; ++k) layers.push_back(c.layers[truly.places[range.first + k]]);
+    std::erase_if(held_in_it, [&](const HeldCycle& h) { return is_subset(h.layers, layers); });
+    held_in_it.push_back({std::move(layers), frame});
+  }
+  for (const int k : short_cycle(count, edges, kCycleStarts)) c.cycle.push_back(c.layers[k]);
+  c.reason = c.cycle.size() == 2 ? MergedComponent::Reason::Interpenetration : MergedComponent::Reason::Cycle;
+  return held_in_it;
+}
 
 namespace {
 
-using Edges = std::vector<std::set<int>>;  // behind -> those in front
-
-bool usable(std::span<const dvec3> points) {
-  for (const dvec3& p : points)
-    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) return false;
-  return !points.empty();
+/// How many layers are not where they were, among those that are in both lines.
+int count_swaps(const std::vector<int>& before, const std::vector<int>& now) {
+  int swaps = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) swaps += before[i] != now[i];
+  return swaps;
 }
 
-bool body_occludes(const dvec3& eye, std::span<const dvec3> a, std::span<const dvec3> b, double touch) {
-  if (!usable(a) || !usable(b)) return false;
-  const dvec3 origin = a[0];
-  std::vector<dvec3> la, lb;
-  const WorldBounds none;
-  WorldBounds ba = none, bb = none;
-  for (const dvec3& p : a) la.push_back(p - origin), ba.lo = glm::min(ba.lo, p), ba.hi = glm::max(ba.hi, p);
-  for (const dvec3& p : b) lb.push_back(p - origin), bb.lo = glm::min(bb.lo, p), bb.hi = glm::max(bb.hi, p);
-  const auto size = [](const WorldBounds& w) {
-    const dvec3 d = w.hi - w.lo;
-    return std::max({d.x, d.y, d.z});
-  };
-  const dvec3 e = eye - origin;
-  const double scale = glm::length(e) + size(ba) + size(bb) + glm::length(lb[0]);
-  return decide_depth({la}, {lb, &e}, touch * std::fmin(size(ba), size(bb)) + 1e-13 * scale).deeper;
-}
-
-bool occludes(const dvec3& eye, const Occluder& a, const Occluder& b, double touch) {
-  for (const auto& p : a.bodies)
-    for (const auto& q : b.bodies)
-      if (body_occludes(eye, p, q, touch)) return true;
-  return false;
-}
-
-std::vector<std::vector<int>> components(const Edges& edges, const std::vector<int>& start) {
-  std::vector<int> index(edges.size(), -1), low(edges.size(), 0), open;
-  std::vector<bool> done(edges.size(), false);
-  std::vector<std::vector<int>> found;
-  int count = 0;
-  std::function<void(int)> walk = [&](int u) {
-    index[u] = low[u] = count++;
-    open.push_back(u);
-    for (const int v : edges[u]) {
-      if (done[v]) continue;
-      if (index[v] < 0) walk(v), low[u] = std::min(low[u], low[v]);
-      else low[u] = std::min(low[u], index[v]);
-    }
-    if (low[u] != index[u]) return;
-    std::vector<int> c;
-    do c.push_back(open.back()), done[open.back()] = true, open.pop_back();
-    while (c.back() != u);
-    std::sort(c.begin(), c.end());
-    found.push_back(c);
-  };
-  for (std::size_t i = start.size(); i-- > 0;)
-    if (index[start[i]] < 0) walk(start[i]);
-  std::reverse(found.begin(), found.end());
-  return found;
+void count_order(VisibilityOrder& out, const KeptPairs& kept) {
+  VisibilityCounters& c = out.counters;
+  c.layers = static_cast<int>(out.order.size());
+  c.components = static_cast<int>(out.groups_back_to_front.size());
+  c.merged_components = static_cast<int>(out.merged.size());
+  for (const MergedComponent& m : out.merged) {
+    c.merged_layers += static_cast<int>(m.layers.size());
+    const auto in = [&](int id) { return std::binary_search(m.layers.begin(), m.layers.end(), id); };
+    for (const ExplicitPair& p : kept.pairs) c.overruled_pairs += in(p.behind) && in(p.front);
+  }
 }
 
 }  // namespace
 
 VisibilityOrder VisibilitySorter::sort(const dvec3& eye, std::span<const Occluder> occluders,
                                        std::span<const ExplicitPair> pairs) {
-  VisibilityOrder out;
-  const int n = static_cast<int>(occluders.size());
-  std::map<int, int> slot;
-  for (int i = 0; i < n; ++i) slot[occluders[i].layer] = i;
-  TALISMAN_CHECK_EQ(static_cast<int>(slot.size()), n);
-  std::vector<int> start(n);
-  for (int i = 0; i < n; ++i) start[i] = i;
-  const auto rank = [&](int i) {
-    const auto& o = state_->last_order;
-    return std::find(o.begin(), o.end(), occluders[i].layer) - o.begin();
-  };
-  std::stable_sort(start.begin(), start.end(), [&](int a, int b) {
-    if (occluders[a].group != occluders[b].group) return occluders[a].group < occluders[b].group;
-    return rank(a) < rank(b);
-  });
-  Edges edges(n);
-  for (int a = 0; a < n; ++a)
-    for (int b = 0; b < n; ++b)
-      if (a != b && occluders[a].group == occluders[b].group &&
-          occludes(eye, occluders[a], occluders[b], state_->options.touch))
-        edges[b].insert(a);
-  for (const ExplicitPair& p : pairs) {
-    if (!slot.count(p.behind) || !slot.count(p.front)) continue;
-    edges[slot[p.front]].erase(slot[p.behind]);
-    edges[slot[p.behind]].insert(slot[p.front]);
-  }
-  for (const auto& c : components(edges, start))
-    if (c.size() > 1) {
-      std::vector<int> ids;
-      for (const int i : c) ids.push_back(occluders[i].layer);
-      std::sort(ids.begin(), ids.end());
-      state_->held[ids] = -1;
-    }
-  std::map<std::vector<int>, int> kept;
-  for (auto& [ids, age] : state_->held)
-    if (++age < std::max(1, state_->options.release_frames)) {
-      for (std::size_t k = 0; k < ids.size(); ++k) {
-        const int u = ids[k], v = ids[(k + 1) % ids.size()];
-        if (slot.count(u) && slot.count(v)) edges[slot[u]].insert(slot[v]);
-      }
-      kept[ids] = age;
-    }
-  state_->held = kept;
-  for (const auto& c : components(edges, start)) {
-    std::vector<int> ids;
-    for (const int i : c) ids.push_back(occluders[i].layer);
-    std::sort(ids.begin(), ids.end());
-    if (ids.size() > 1) {
-      MergedComponent m;
-      m.layers = ids;
-      for (const int u : c)
-        for (const int v : edges[u])
-          if (std::find(c.begin(), c.end(), v) != c.end())
-            m.relations.push_back({occluders[u].layer, occluders[v].layer});
-      out.merged.push_back(m);
-    }
-    out.order.insert(out.order.end(), ids.begin(), ids.end());
-    out.groups_back_to_front.push_back(ids);
-  }
-  state_->last_order = out.order;
+  State& s = *state_;
+  ++s.frame;
+  s.eye = finite(eye) ? eye : dvec3{0, 0, 0};
+  VisibilityCounters counters;
+  s.relations.place_eye(s.eye);
+  s.place(occluders);
+  s.relations.update(counters);
+  s.line_up();
+  s.forget_old_cycles();
+  const KeptPairs kept = keep_pairs(pairs, [&](int layer) { return s.group_of(layer); });
+  std::vector<OrderEdge> edges = s.relate(kept);
+  const std::vector<OrderEdge> ring = s.hold();
+  const std::size_t related = edges.size();
+  edges.insert(edges.end(), ring.begin(), ring.end());
+  const SortedLine sorted = sort_line(static_cast<int>(s.line.size()), edges);
+  VisibilityOrder out = s.arrange(sorted);
+  s.explain(out, std::span<const OrderEdge>(edges).first(related));
+  counters.sorted = sorted.sorted;
+  counters.swaps = count_swaps(s.line, out.order);
+  out.counters = counters;
+  out.defect = kept.defect;
+  count_order(out, kept);
+  s.line = out.order;
   return out;
 }
+
+VisibilitySorter::VisibilitySorter(const VisibilityOptions& options)
+    : state_(std::make_unique<State>(options)) {}
+VisibilitySorter::VisibilitySorter(const VisibilitySorter& other)
+    : state_(std::make_unique<State>(*other.state_)) {}
+VisibilitySorter::VisibilitySorter(VisibilitySorter&&) noexcept = default;
+VisibilitySorter& VisibilitySorter::operator=(VisibilitySorter other) noexcept {
+  state_ = std::move(other.state_);
+  return *this;
+}
+VisibilitySorter::~VisibilitySorter() = default;
 
 }  // namespace talisman::layers

@@ -10,8 +10,8 @@
 ///   A ∩ conv({e} ∪ B) ≠ ∅,
 ///
 /// and it holds in one direction at most: a plane between A and B has the eye on one side, and what is on the
-/// eye's side cannot be occluded across it. With the depth of two convex sets, the least way by which one must
-/// be shifted to leave the other,
+/// eye's side cannot be occluded across it. With the depth of two convex sets, the least way by which one
+/// must be shifted to leave the other,
 ///
 ///   depth(A, C) = min over unit n of ( max a·n - min c·n )        negative: their distance,
 ///
@@ -36,8 +36,9 @@
 /// this relation have no order; their layers are *merged*, that is rendered into one sprite, where a z-buffer
 /// decides [LS97 2.2, footnote 4]. What the relation leaves open keeps the order of the last frame, which is
 /// the hysteresis against an order that flickers between equals; layers that are new come by the distance of
-/// their centre (far first), then by id. A component that was merged stays merged until its cycle has been
-/// absent for `release_frames` frames; layers that lie between its members are merged with it meanwhile.
+/// their centre (far first), then by id. A component that was merged stays merged for another
+/// `release_frames` frames after its cycle has gone; layers that lie between its members are merged with it
+/// meanwhile.
 ///
 /// How it is kept from frame to frame: layers/visibility.cpp.
 
@@ -69,8 +70,8 @@ struct VisibilityOptions {
   /// axis) are taken as touching. Range [0, 0.5], default 0.001. Raising it merges fewer layers, and lets as
   /// much of one show through the other; it costs no time.
   double touch = 1e-3;
-  /// Frames for which a cycle has to be absent before its layers are split again. Range ≥ 0, default 4; 0
-  /// splits at once. Raising it avoids flicker between merged and split (each change renders the layers anew)
+  /// Frames for which layers stay merged after the last frame with a cycle. Range ≥ 0, default 4; 0 splits at
+  /// once. Raising it avoids flicker between merged and split (each change renders the layers anew)
   /// and costs the rendering of merged layers for longer.
   int release_frames = 4;
 };
@@ -79,10 +80,11 @@ struct VisibilityOptions {
 struct MergedComponent {
   enum class Reason { Interpenetration, Cycle, Held };
   std::vector<int> layers;  ///< ascending
-  /// Interpenetration: some two of them occlude each other; Cycle: they do not, but three or more go round;
-  /// Held: no cycle now, but one was there less than `release_frames` frames ago.
+  /// Interpenetration: some two of them occlude each other (their bodies meet, or a body of each lies before
+  /// one of the other's); Cycle: no two do, but three or more go round; Held: no cycle now, but one was there
+  /// at most `release_frames` frames ago.
   Reason reason = Reason::Cycle;
-  std::vector<int> cycle;  ///< a shortest cycle, each behind the next and the last behind the first; Held: empty
+  std::vector<int> cycle;  ///< a short one, each behind the next and the last behind the first; Held: empty
   int absent_frames = 0;   ///< frames since the last cycle among them; 0: there is one now
   std::vector<ExplicitPair> relations;  ///< all pairs of them that are related, by geometry or the author
 };
