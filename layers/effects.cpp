@@ -38,17 +38,38 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
     case Effect::LayerResolution:
     case Effect::MotionBlur:
     case Effect::SpriteCompression:
+    case Effect::VisibilitySort:
       break;  // asked for by layers and runs, not by parts
   }
   return {};
 }
 
-std::string call_of(const Scene& scene, const Layer& layer, Effect effect, const RunEffects& run) {
+const char* name_of(OrderGroup group) {
+  return group == OrderGroup::Background   ? "background"
+         : group == OrderGroup::Foreground ? "foreground"
+                                           : "normal";
+}
+
+/// The first other layer of the same group; null: the groups order `layer` against all others.
+const Layer* first_rival(std::span<const Layer> layers, const Layer& layer) {
+  for (const Layer& other : layers)
+    if (other.id != layer.id && other.group == layer.group) return &other;
+  return nullptr;
+}
+
+std::string call_of(const Scene& scene, std::span<const Layer> layers, const Layer& layer, Effect effect,
+                    const RunEffects& run) {
   if (effect == Effect::SpriteCompression)
     return run.compression_quality ? "the run asks for quality " + std::to_string(*run.compression_quality)
                                    : "";
   if (effect == Effect::MotionBlur)
     return layer.preferences.motion_blur > 0 ? "layer '" + layer.name + "' has motion_blur > 0" : "";
+  if (effect == Effect::VisibilitySort) {
+    const Layer* rival = first_rival(layers, layer);
+    return rival ? "layers '" + layer.name + "' and '" + rival->name + "' of group " + name_of(layer.group) +
+                       " can overlap"
+                 : "";
+  }
   if (effect == Effect::LayerResolution)
     return layer.preferences.resolution_scale != 1 ? "layer '" + layer.name + "' has its own resolution" : "";
   for (const int part : layer.parts)
@@ -75,6 +96,8 @@ std::string why_not(const Scene& scene, Effect effect) {
       return "no layer has motion_blur > 0";
     case Effect::SpriteCompression:
       return "the run does not ask for it";
+    case Effect::VisibilitySort:
+      return "no two layers are in one group";
   }
   return {};
 }
@@ -101,8 +124,16 @@ std::string_view name(Effect effect) {
       return "motion_blur";
     case Effect::SpriteCompression:
       return "sprite_compression";
+    case Effect::VisibilitySort:
+      return "visibility_sort";
   }
   return "?";
+}
+
+bool calls_for_visibility_sort(std::span<const Layer> layers) {
+  for (const Layer& layer : layers)
+    if (first_rival(layers, layer)) return true;
+  return false;
 }
 
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers,
@@ -111,7 +142,7 @@ std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const L
   for (const Effect effect : kAllEffects) {
     EffectCall call{effect, false, why_not(scene, effect), {}};
     for (const Layer& layer : layers) {
-      std::string why = call_of(scene, layer, effect, run);
+      std::string why = call_of(scene, layers, layer, effect, run);
       if (why.empty()) continue;
       if (!call.called) call.why = std::move(why);
       call.called = true;

@@ -4,8 +4,8 @@
 /// Which effects does a scene call for, and why?
 ///
 /// What a scene does not use costs nothing: no pass, no memory, no counter. This table is computed from the
-/// scene, its layers and the options of the run alone, before anything is drawn, and names for every effect the
-/// element that calls for it or that none does.
+/// scene, its layers and the options of the run alone, before anything is drawn, and names for every effect
+/// the element that calls for it or that none does.
 
 #include <array>
 #include <optional>
@@ -28,10 +28,12 @@ enum class Effect {
   LayerResolution,    ///< some layer asks for a resolution other than the display's
   MotionBlur,         ///< some layer has an open shutter: sampled along its motion
   SpriteCompression,  ///< the run keeps its sprites compressed
+  VisibilitySort,     ///< some layers can overlap, and the author's groups do not order them
 };
-inline constexpr std::array kAllEffects = {Effect::Texture,           Effect::MipFilter,    Effect::Lighting,
-                                           Effect::SpecularHighlight, Effect::Translucency, Effect::Skinning,
-                                           Effect::LayerResolution, Effect::MotionBlur, Effect::SpriteCompression};
+inline constexpr std::array kAllEffects = {
+    Effect::Texture,           Effect::MipFilter,     Effect::Lighting,        Effect::SpecularHighlight,
+    Effect::Translucency,      Effect::Skinning,      Effect::LayerResolution, Effect::MotionBlur,
+    Effect::SpriteCompression, Effect::VisibilitySort};
 std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
 
 struct EffectCall {
@@ -45,6 +47,9 @@ struct EffectCall {
 struct RunEffects {
   std::optional<int> compression_quality;  ///< empty: sprites are kept as they are
 };
+
+/// Are there two layers that the author's groups do not order? Cost: O(layers).
+bool calls_for_visibility_sort(std::span<const Layer> layers);
 
 /// One entry per effect, in the order of kAllEffects. Parts that no layer takes do not count. Cost: O(parts).
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers,

@@ -62,6 +62,9 @@ struct Layer {
   int polygons = 0;  ///< triangles of all its parts
   int rigid_node =
       -1;  ///< the node that all parts follow rigidly; -1: they move against each other or deform
+  std::vector<int>
+      members;  ///< of an aggregate (layers/aggregate.h): the layers drawn in it, ascending; else empty
+  bool is_aggregate() const { return !members.empty(); }
 };
 
 struct LayerSet {

@@ -298,17 +298,18 @@ Layer alone(const Scene& scene, int part) {
   return layer;
 }
 
+int points_per_hull(BoundKind kind) { return kCorners * static_cast<int>(vertices_per_corner(kind).size()); }
+
 LayerBound bound_of_each_part(const Scene& scene, const Layer& layer, BoundKind kind) {
   LayerBound bound;
   bound.kind = kind;
-  const int points_per_body = kCorners * static_cast<int>(vertices_per_corner(kind).size());
+  bound.parts = layer.parts;
   for (const int part : layer.parts) {
     if (scene.meshes[scene.parts[part].mesh].positions.empty()) continue;
-    const int first = static_cast<int>(bound.bodies.size()) * points_per_body;
+    const int first = static_cast<int>(bound.bodies.size()) * points_per_hull(kind);
     for (const auto& [a, b, c] : topology(kind))
       bound.hull.triangles.push_back({a + first, b + first, c + first});
     bound.bodies.push_back(make_layer_bound(scene, alone(scene, part), kind));
-    bound.bodies.back().part = part;
   }
   return bound;
 }
@@ -320,6 +321,7 @@ LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind ki
     return bound_of_each_part(scene, layer, kind);
   LayerBound bound;
   bound.kind = kind;
+  bound.parts = layer.parts;
   bound.node = follows_rigid_node(scene, layer) ? layer.rigid_node : -1;
   bound.at_rest = bound.node < 0 && is_at_rest(scene, layer);
   if (bound.fixed()) {
@@ -331,11 +333,18 @@ LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind ki
   return bound;
 }
 
+int point_count(const LayerBound& bound) {
+  if (bound.bodies.empty()) return points_per_hull(bound.kind);
+  int count = 0;
+  for (const LayerBound& body : bound.bodies) count += point_count(body);
+  return count;
+}
+
 std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, const LayerBound& bound) {
   if (!bound.bodies.empty()) {
     std::vector<dvec3> points;
     for (const LayerBound& body : bound.bodies) {
-      const auto of_body = world_points(frame, alone(*frame.scene, body.part), body);
+      const auto of_body = world_points(frame, layer, body);
       if (of_body.empty()) return {};  // a part that is not finite: nothing can be said of the layer
       points.insert(points.end(), of_body.begin(), of_body.end());
     }
@@ -347,7 +356,7 @@ std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, con
     return moved(frame.world_from_node[bound.node], bound.hull.points);
   }
   std::vector<dvec3> positions;
-  for (const int part : layer.parts) {
+  for (const int part : bound.parts) {
     const auto of_part = world_positions(frame, frame.scene->parts[part]);
     positions.insert(positions.end(), of_part.begin(), of_part.end());
   }

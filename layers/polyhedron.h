@@ -53,23 +53,27 @@ std::span<const std::array<int, 3>> topology(BoundKind kind);
 /// The characteristic polyhedron of one layer.
 struct LayerBound {
   BoundKind kind = BoundKind::Box8;
-  int node = -1;         ///< space of `hull.points`; -1: world
-  int axes_node = -1;    ///< where the points are recomputed: planes follow its axes; -1: the world's
-  bool at_rest = false;  ///< nothing in the layer moves: `hull.points` are world points at every time
-  Polyhedron hull;       ///< points are valid when fixed(); the triangles always are
-  /// One bound per part where the layer asks for it (LayerPreferences::bound_each_part). Then `hull` has the
-  /// triangles of all of them, one after the other, and the points are theirs in the same order.
+  int node = -1;           ///< space of `hull.points`; -1: world
+  int axes_node = -1;      ///< where the points are recomputed: planes follow its axes; -1: the world's
+  bool at_rest = false;    ///< nothing in the layer moves: `hull.points` are world points at every time
+  Polyhedron hull;         ///< points are valid when fixed(); the triangles always are
+  std::vector<int> parts;  ///< those it bounds, ascending
+  /// One bound per part where the layer asks for it (LayerPreferences::bound_each_part), one per member in an
+  /// aggregate (layers/aggregate.h); they may have bodies themselves. Then `hull` has the triangles of all of
+  /// them, one after the other, and the points are theirs in the same order.
   std::vector<LayerBound> bodies;
-  int part = -1;         ///< of a body: the part that it bounds
 
   bool fixed() const { return node >= 0 || at_rest; }
 };
 
 /// One polyhedron for the whole, or the polyhedra of the parts together: the two ways to group bodies of
-/// [LS97 3.1]. The one is fixed in `layer.rigid_node` where the layer has one, fixed in the world where nothing in it moves.
-/// Otherwise the points are recomputed, along the axes of the lowest node above all its parts and joints, so
-/// that the polyhedron turns with a layer that turns as a whole.
+/// [LS97 3.1]. The one is fixed in `layer.rigid_node` where the layer has one, fixed in the world where
+/// nothing in it moves. Otherwise the points are recomputed, along the axes of the lowest node above all its
+/// parts and joints, so that the polyhedron turns with a layer that turns as a whole.
 LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind);
+
+/// How many characteristic points the bound has wherever it has any.
+int point_count(const LayerBound& bound);
 
 /// World positions of the characteristic points at `frame`; none if the layer has no vertices or they are not
 /// finite. Cost: O(points) if fixed, else O(vertices of the layer).

@@ -57,16 +57,20 @@ bool looks_ahead(const Pipeline& pipeline) {
 
 double time_of(const Pipeline& pipeline, int frame) { return frame / pipeline.settings.fps; }
 
-const std::vector<LayerState>& states_at(const Pipeline& pipeline, PipelineState& state, int frame) {
-  const auto [entry, is_new] = state.captured.try_emplace(frame);
-  CapturedFrame& captured = entry->second;
-  if (!is_new) return captured.states;
-  const layers::SceneFrame scene_frame = pipeline.scene.at(time_of(pipeline, frame));
-  captured.states.reserve(pipeline.layers.layers.size());
-  for (const Layer& layer : pipeline.layers.layers)
-    captured.states.push_back(
-        layers::capture(scene_frame, layer, pipeline.bounds[layer.id], pipeline.settings.view));
+const std::vector<LayerState>& states_at(const Pipeline& authored, PipelineState& state, int frame) {
+  CapturedFrame& captured = state.captured[frame];
+  if (captured.generation == state.order.generation) return captured.states;
+  const Pipeline& pipeline = with_aggregates(authored, state);
+  captured.generation = state.order.generation;
+  captured.states.resize(pipeline.layers.layers.size());
   captured.placements.resize(captured.states.size());
+  std::optional<layers::SceneFrame> scene_frame;  // evaluated only if something is missing
+  for (const Layer& layer : pipeline.layers.layers) {
+    LayerState& layer_state = captured.states[layer.id];
+    if (layer_state.layer == layer.id || !exists_now(pipeline, state, layer.id)) continue;
+    if (!scene_frame) scene_frame = pipeline.scene.at(time_of(pipeline, frame));
+    layer_state = layers::capture(*scene_frame, layer, pipeline.bounds[layer.id], pipeline.settings.view);
+  }
   return captured.states;
 }
 

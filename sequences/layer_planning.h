@@ -16,7 +16,8 @@ bool looks_ahead(const Pipeline& pipeline);
 double time_of(const Pipeline& pipeline, int frame);
 
 /// The states of all layers at `frame`, by layer id; captured once and kept in `state` (a frame ahead that
-/// was looked at is not captured again when it comes).
+/// was looked at is not captured again when it comes). Aggregates (sequences/aggregates.h) are captured if
+/// they exist in the frame that was ordered last. The reference holds until aggregates are made.
 const std::vector<layers::LayerState>& states_at(const Pipeline& pipeline, PipelineState& state, int frame);
 
 /// Forgets the states of frames before `frame`.

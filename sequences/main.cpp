@@ -13,6 +13,7 @@
 #include "sequences/accuracy_command.h"
 #include "sequences/diff.h"
 #include "sequences/inspect.h"
+#include "sequences/inspect_order.h"
 #include "sequences/options.h"
 #include "sequences/warps_command.h"
 
@@ -48,6 +49,9 @@ void add_run_options(CLI::App& command, CommandLine& line) {
                      "warp curve: trn trni iso isoi so soi aff affi per peri per2 per2i pers pers2");
   command.add_option("--size", line.size, "display, WxH pixels");
   command.add_option("--bound", line.bound, "characteristic polyhedron: box8, dop14 or dop26");
+  command.add_option(
+      "--cycles", line.cycles,
+      "layers that occlude each other in a cycle: merge (into one sprite) or keep (may be wrong)");
   command.add_option("--expected-reuse", line.expected_reuse,
                      "frames for which clipped sprites are enlarged");
   command.add_option("--threads", line.threads,
@@ -88,7 +92,14 @@ int run_sequence(const CommandLine& line, bool plan_only) {
   return kSuccess;
 }
 
-int inspect_sequence(const std::string& name, bool json, bool profile) {
+/// The visibility order as a run with the sequence's own settings has it.
+std::string order_of(const Sequence& sequence, const CommandLine& line, bool json) {
+  const ResolvedRun resolved = resolve(line, sequence, true);
+  const OrderOverTime order = order_over_time(sequence, resolved.settings);
+  return json ? order_json(sequence, order) : order_text(sequence, order);
+}
+
+int inspect_sequence(const CommandLine& line, const std::string& name, bool json, bool profile, bool order) {
   if (profile) std::fputs(profile_text().c_str(), stdout);
   if (name.empty()) {
     if (profile) return kSuccess;
@@ -96,7 +107,10 @@ int inspect_sequence(const std::string& name, bool json, bool profile) {
   }
   const Sequence sequence = load_sequence(name);
   for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  std::fputs((json ? inspection_json(sequence) : inspection_text(sequence)).c_str(), stdout);
+  const std::string text = order  ? order_of(sequence, line, json)
+                           : json ? inspection_json(sequence)
+                                  : inspection_text(sequence);
+  std::fputs(text.c_str(), stdout);
   return kSuccess;
 }
 
@@ -104,7 +118,7 @@ struct Commands {
   CLI::App app{"talisman: a simulator of layered sprite rendering"};
   CommandLine line;
   std::string inspected;
-  bool json = false, profile = false;
+  bool json = false, profile = false, order = false;
   DiffOptions diff;
   WarpsOptions warps;
   AccuracyOptions accuracy;
@@ -127,7 +141,10 @@ struct Commands {
                         "name of a sequence, path of its YAML file, or path of a model");
     inspect->add_flag("--json", json, "print JSON");
     inspect->add_flag("--profile", profile, "print the hardware profile with the source of each number");
-    inspect->callback([this] { exit_code = inspect_sequence(inspected, json, profile); });
+    inspect->add_flag("--order", order,
+                      "the visibility order over time, what was merged and why, and what the sort cost");
+    inspect->add_option("--cycles", line.cycles, "with --order: merge or keep");
+    inspect->callback([this] { exit_code = inspect_sequence(line, inspected, json, profile, order); });
 
     CLI::App* diff_command = app.add_subcommand("diff", "image error of two frames or folders of frames");
     diff_command->add_option("a", diff.a, "frame or folder under test")->required();
@@ -139,8 +156,8 @@ struct Commands {
   }
 
   void add_experiments() {
-    CLI::App* warps_command =
-        app.add_subcommand("warps", "update rate against error of every warp, and picture quality at one rate");
+    CLI::App* warps_command = app.add_subcommand(
+        "warps", "update rate against error of every warp, and picture quality at one rate");
     warps_command->add_option("--object", warps.object, "name or file of one object (all)");
     warps_command->add_option("--bound", warps.bound, "characteristic polyhedron: box8, dop14 or dop26");
     warps_command->add_option("--out", warps.out, "result folder (out/warps)");

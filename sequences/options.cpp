@@ -126,6 +126,12 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
                                                std::array{std::pair{"box8", layers::BoundKind::Box8},
                                                           std::pair{"dop14", layers::BoundKind::Dop14},
                                                           std::pair{"dop26", layers::BoundKind::Dop26}});
+  settings.explicit_order = sequence.explicit_order;
+  settings.cycles =
+      line.cycles.empty()
+          ? sequence.cycles
+          : choice("--cycles", line.cycles,
+                   std::array{std::pair{"merge", Cycles::Merge}, std::pair{"keep", Cycles::Keep}});
   settings.extents = sequence.extents;
   if (line.expected_reuse)
     settings.extents.expected_reuse_frames = positive("--expected-reuse", *line.expected_reuse, 1e4);

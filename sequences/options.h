@@ -18,7 +18,7 @@ struct CommandLine {
   std::string out;     ///< empty: out/<name>, for plans out/<name>-plan
   std::string frames;  ///< "A-B", "A" or empty: all; inclusive
   std::string size;    ///< "WxH"
-  std::string policy, warp, bound, shading, format = "png", progress = "auto";
+  std::string policy, warp, bound, cycles, shading, format = "png", progress = "auto";
   std::optional<double> geometric_px, cutoff_px, expected_reuse, resolution;
   std::optional<int> hold, lookahead;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says

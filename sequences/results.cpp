@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -98,6 +99,36 @@ constexpr RealField kTimes[] = {{"plan_ms", &FrameLine::plan_ms},
                                 {"io_ms", &FrameLine::io_ms},
                                 {"modelled_ms", &FrameLine::modelled_ms}};
 
+struct SortField {
+  const char* name;
+  int layers::VisibilityCounters::*field;
+};
+constexpr SortField kSort[] = {{"layers", &layers::VisibilityCounters::layers},
+                               {"queries", &layers::VisibilityCounters::queries},
+                               {"pairs", &layers::VisibilityCounters::pairs},
+                               {"exact_tests", &layers::VisibilityCounters::exact_tests},
+                               {"edges", &layers::VisibilityCounters::edges},
+                               {"swaps", &layers::VisibilityCounters::swaps},
+                               {"components", &layers::VisibilityCounters::components},
+                               {"merged_components", &layers::VisibilityCounters::merged_components},
+                               {"merged_layers", &layers::VisibilityCounters::merged_layers}};
+
+Json json_of(const VisibilityLine& line) {
+  Json json = Json::object();
+  for (const SortField& f : kSort) json[f.name] = line.counters.*f.field;
+  json["merged_parts"] = line.merged_parts;
+  json["sort_ms"] = line.sort_ms;
+  return json;
+}
+
+VisibilityLine visibility_from(const Json& json) {
+  VisibilityLine line;
+  for (const SortField& f : kSort) json.at(f.name).get_to(line.counters.*f.field);
+  json.at("merged_parts").get_to(line.merged_parts);
+  json.at("sort_ms").get_to(line.sort_ms);
+  return line;
+}
+
 }  // namespace
 
 std::string hash_of(const chunker::Frame& picture) {
@@ -128,6 +159,8 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
   }
   line.pixels_reference = report.pixels_reference;
   line.plan_ms = report.times.plan_ms;
+  if (report.order.sorted)
+    line.visibility = {report.order.counters, report.order.merged_parts, report.order.sort_ms};
   if (report.picture.pixels.empty()) return line;
   line.frame_hash = hash_of(report.picture);
   line.pixels_filled = report.render.pixels_filled;
@@ -156,6 +189,7 @@ std::string json_of(const FrameLine& line) {
   for (const auto& f : kTimes)
     json[f.name] = drawn || f.field == &FrameLine::plan_ms ? Json(line.*f.field) : Json(nullptr);
   if (line.compression) json["compression"] = compression_json(*line.compression);
+  json["visibility"] = line.visibility ? json_of(*line.visibility) : Json(nullptr);
   if (line.quality)
     json["quality"] = {{"total", json_of(line.quality->total)},
                        {"reuse", json_of(line.quality->reuse)},
@@ -176,6 +210,7 @@ std::optional<FrameLine> frame_line_from_json(const std::string& text) try {
   for (const auto& f : kMeasured) read(f.name, line.*f.field);
   for (const auto& f : kTimes) read(f.name, line.*f.field);
   if (json.contains("compression")) line.compression = compression_from_json(json["compression"]);
+  if (!json.at("visibility").is_null()) line.visibility = visibility_from(json["visibility"]);
   if (json.contains("quality"))
     line.quality =
         FrameQuality{quality_from(json["quality"].at("total")), quality_from(json["quality"].at("reuse")),
@@ -183,6 +218,10 @@ std::optional<FrameLine> frame_line_from_json(const std::string& text) try {
   return line;
 } catch (const Json::exception&) {
   return std::nullopt;
+}
+
+bool has_line(const Pipeline& pipeline, const FrameReport& report, int layer) {
+  return !pipeline.layers.layers[layer].is_aggregate() || report.order.merger(layer) != nullptr;
 }
 
 std::string json_of(const Pipeline& pipeline, const FrameReport& report, const regulator::LayerDecision& d) {
@@ -202,6 +241,28 @@ std::string json_of(const Pipeline& pipeline, const FrameReport& report, const r
   return json.dump();
 }
 
+namespace {
+
+LayerSummary row_of(const layers::Layer& layer) {
+  LayerSummary row;
+  row.name = layer.name;
+  row.parts = static_cast<int>(layer.parts.size());
+  row.polygons = layer.polygons;
+  row.is_aggregate = layer.is_aggregate();
+  return row;
+}
+
+/// Is the effect at work when this layer is rendered? In an aggregate it is if one of the members uses it.
+bool is_drawn_with(const layers::EffectCall& effect, const layers::Layer& layer) {
+  if (effect.effect == layers::Effect::VisibilitySort) return false;  // no matter of rendering
+  const auto uses = [&](int id) {
+    return std::find(effect.layers.begin(), effect.layers.end(), id) != effect.layers.end();
+  };
+  return uses(layer.id) || std::any_of(layer.members.begin(), layer.members.end(), uses);
+}
+
+}  // namespace
+
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   const Settings& settings = pipeline.settings;
   Summary summary;
@@ -213,12 +274,17 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   summary.effects = layers::effects_called_for(pipeline.scene, pipeline.layers.layers,
                                                {.compression_quality = summary.compression_quality});
   summary.effect_passes.assign(summary.effects.size(), 0);
-  for (const layers::Layer& layer : pipeline.layers.layers)
-    summary.layers.push_back({layer.name, static_cast<int>(layer.parts.size()), layer.polygons});
+  for (const layers::Layer& layer : pipeline.layers.layers) summary.layers.push_back(row_of(layer));
   return summary;
 }
 
-void add_decisions(Summary& summary, const FrameReport& report, const PipelineState& state) {
+void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport& report,
+                   const PipelineState& state) {
+  for (std::size_t id = summary.layers.size(); id < pipeline.layers.layers.size(); ++id)
+    summary.layers.push_back(row_of(pipeline.layers.layers[id]));
+  for (std::size_t e = 0; e < summary.effects.size(); ++e)
+    if (summary.effects[e].effect == layers::Effect::VisibilitySort)
+      summary.effect_passes[e] += report.order.sorted;
   for (const regulator::LayerDecision& d : report.plan.decisions) {
     if (d.action == regulator::Action::Drop) continue;
     LayerSummary& layer = summary.layers[d.layer];
@@ -230,21 +296,29 @@ void add_decisions(Summary& summary, const FrameReport& report, const PipelineSt
     const layers::ivec2 size = state.memory[d.layer].placement.size_px;
     if (std::int64_t{size.x} * size.y > std::int64_t{layer.sprite_px.x} * layer.sprite_px.y)
       layer.sprite_px = size;
+    const layers::Layer& drawn = pipeline.layers.layers[d.layer];
+    for (const int member : drawn.members) ++summary.layers[member].merged_renders;
     for (std::size_t e = 0; e < summary.effects.size(); ++e)
-      for (const int user : summary.effects[e].layers) summary.effect_passes[e] += user == d.layer;
+      summary.effect_passes[e] += is_drawn_with(summary.effects[e], drawn);
   }
 }
 
 double Summary::mean_update_rate() const {
   double sum = 0;
-  for (const LayerSummary& layer : layers) sum += layer.update_rate(static_cast<int>(frames.size()));
-  return layers.empty() ? 0 : sum / static_cast<double>(layers.size());
+  int count = 0;
+  for (const LayerSummary& layer : layers) {
+    if (layer.is_aggregate) continue;
+    sum += layer.drawn_rate(static_cast<int>(frames.size()));
+    ++count;
+  }
+  return count > 0 ? sum / count : 0;
 }
 
 double Summary::cost_weighted_update_rate() const {
   double weighted = 0, weight = 0;
   for (const LayerSummary& layer : layers) {
-    weighted += layer.polygons * layer.update_rate(static_cast<int>(frames.size()));
+    if (layer.is_aggregate) continue;
+    weighted += layer.polygons * layer.drawn_rate(static_cast<int>(frames.size()));
     weight += layer.polygons;
   }
   return weight > 0 ? weighted / weight : 0;

@@ -28,6 +28,13 @@ struct FrameQuality {
   Quality resampling;  ///< `reference` against `direct`: what sprites lose even when fresh
 };
 
+/// The visibility sort of one frame.
+struct VisibilityLine {
+  layers::VisibilityCounters counters;
+  int merged_parts = 0;
+  double sort_ms = 0;  ///< part of plan_ms
+};
+
 /// One frame in numbers: what a line of frames.jsonl holds.
 struct FrameLine {
   int frame = 0;
@@ -45,6 +52,7 @@ struct FrameLine {
   double plan_ms = 0, render_ms = 0, composite_ms = 0, io_ms = 0;
   double modelled_ms = 0;  ///< by the profile talisman-1996
   std::optional<CompressionReport> compression;
+  std::optional<VisibilityLine> visibility;  ///< empty: the groups alone gave the order
   std::optional<FrameQuality> quality;
 };
 
@@ -52,6 +60,9 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report);
 std::string json_of(const FrameLine& line);
 /// Empty if the text is not a whole line of frames.jsonl.
 std::optional<FrameLine> frame_line_from_json(const std::string& text);
+
+/// Has this layer a line in decisions.jsonl? Aggregates have one in the frames in which they exist.
+bool has_line(const Pipeline& pipeline, const FrameReport& report, int layer);
 
 /// A line of decisions.jsonl.
 std::string json_of(const Pipeline& pipeline, const FrameReport& report,
@@ -64,10 +75,16 @@ struct LayerSummary {
   std::string name;
   int parts = 0, polygons = 0;
   int renders = 0, frames_shown = 0;
+  int merged_renders = 0;       ///< renders of aggregates in which it took part; not among `renders`
+  bool is_aggregate = false;    ///< counted with its members where rates are averaged
   double sum_geometric_px = 0;  ///< over the frames in which it was shown
   double max_geometric_px = 0;
   layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
   double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
+  /// The share of frames in which it was drawn anew, alone or in an aggregate.
+  double drawn_rate(int frames) const {
+    return frames > 0 ? static_cast<double>(renders + merged_renders) / frames : 0;
+  }
   double mean_geometric_px() const { return frames_shown > 0 ? sum_geometric_px / frames_shown : 0; }
 };
 
@@ -82,6 +99,7 @@ struct Summary {
   std::vector<int> effect_passes;  ///< renders of layers that use the effect, one per entry of `effects`
   std::vector<FrameLine> frames;
 
+  /// Over the author's layers; a render of an aggregate counts for each of its members.
   double mean_update_rate() const;
   double cost_weighted_update_rate() const;  ///< weighted by polygons
   std::int64_t total(std::int64_t FrameLine::*field) const;
@@ -90,8 +108,9 @@ struct Summary {
 };
 
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence);
-/// Adds one frame's decisions.
-void add_decisions(Summary& summary, const FrameReport& report, const PipelineState& state);
+/// Adds one frame's decisions; aggregates are added to the layers when they are first shown.
+void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport& report,
+                   const PipelineState& state);
 std::string json_of(const Summary& summary);
 /// The table that the tool prints at the end.
 std::string table_of(const Summary& summary);

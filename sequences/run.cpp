@@ -54,6 +54,7 @@ Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& 
           {"uncovered_px", r.uncovered_px},
           {"warp", warp::name(s.curve)},
           {"bound", static_cast<int>(s.bound)},
+          {"cycles", s.cycles == Cycles::Merge ? "merge" : "keep"},
           {"extents", {s.extents.expected_reuse_frames, s.extents.max_growth, s.view.clip_margin}},
           {"placement",
            {s.placement.slab_directions, s.placement.min_rotation_gain, s.placement.resolution_scale}},
@@ -175,9 +176,10 @@ class Runner {
     const bool draw = in_range && kept == kept_.end() && prepared_;
     FrameReport report = step(pipeline_, state_, frame, draw ? prepared_.get() : nullptr);
     if (!in_range) return;
-    add_decisions(summary_, report, state_);
+    const Pipeline& pipeline = with_aggregates(pipeline_, state_);
+    add_decisions(summary_, pipeline, report, state_);
     for (const regulator::LayerDecision& decision : report.plan.decisions)
-      decisions_->write(json_of(pipeline_, report, decision));
+      if (has_line(pipeline, report, decision.layer)) decisions_->write(json_of(pipeline, report, decision));
     if (kept != kept_.end())
       writer_.submit([this, line = kept->second] { add_line(line); });
     else
@@ -195,7 +197,8 @@ class Runner {
   void finish(double fps) {
     decisions_->finish();
     frames_->finish();
-    if (options_.video) write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
+    if (options_.video)
+      write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
     write_text_atomically(options_.out + "/summary.json", json_of(summary_));
   }
 
@@ -205,15 +208,19 @@ class Runner {
     std::optional<FrameQuality> quality;
     if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
-    writer_.submit([this, shared, quality] { finish_frame(*shared, quality); });
+    // The aggregates may grow meanwhile; those of this frame stay as they are as long as they are held.
+    writer_.submit([this, shared, quality, grown = state_.order.grown] {
+      finish_frame(with_aggregates(pipeline_, grown.get()), *shared, quality);
+    });
   }
 
-  void finish_frame(const FrameReport& report, const std::optional<FrameQuality>& quality) {
-    FrameLine line = line_of(pipeline_, report);
+  void finish_frame(const Pipeline& pipeline, const FrameReport& report,
+                    const std::optional<FrameQuality>& quality) {
+    FrameLine line = line_of(pipeline, report);
     line.quality = quality;
     if (prepared_) {
       const auto start = std::chrono::steady_clock::now();
-      write_picture(pipeline_, report, options_);
+      write_picture(pipeline, report, options_);
       line.io_ms =
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     }

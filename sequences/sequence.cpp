@@ -80,7 +80,7 @@ Sequence load_yaml(const std::string& path) {
   if (const std::string defect = layers::first_defect(built.scene); !defect.empty())
     throw InputError(defect, path);
   if (built.scene.parts.empty())
-    throw InputError("shows nothing, rule: at least one of models, terrain and sky", path);
+    throw InputError("shows nothing, rule: at least one of shapes, models, terrain and sky", path);
   std::vector<layers::LayerSpec> specs;
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   if (specs.empty()) specs = specs_of_model(built.scene, built.layer_tags);
@@ -90,6 +90,7 @@ Sequence load_yaml(const std::string& path) {
     file.settings.file = path;
     fail_at_layer(file, sequence.layers.defect);
   }
+  sequence.explicit_order = resolve_layer_pairs(file.order, sequence.layers.layers);
   return sequence;
 }
 

@@ -16,6 +16,7 @@
 #include "layers/sprite_transform.h"
 #include "regulator/plan.h"
 #include "sequences/errors.h"
+#include "sequences/frame_order.h"
 
 namespace talisman::sequences {
 
@@ -27,6 +28,8 @@ struct Sequence {
   layers::ivec2 display_px{1024, 1024};
   std::shared_ptr<const layers::Scene> scene;
   layers::LayerSet layers;
+  std::vector<layers::ExplicitPair> explicit_order;
+  Cycles cycles = Cycles::Merge;
   layers::BoundKind bound = layers::BoundKind::Box8;
   layers::ExtentOptions extents;
   layers::PlacementOptions placement;

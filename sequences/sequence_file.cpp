@@ -128,6 +128,8 @@ void read_settings(YamlMap& map, Sequence& sequence) {
   if (const YamlValue* v = map.find("extents")) sequence.extents = read_extents(v->map());
   if (const YamlValue* v = map.find("placement")) sequence.placement = read_placement(v->map());
   if (const YamlValue* v = map.find("compression")) sequence.compression = read_compression(v->map());
+  if (const YamlValue* v = map.find("cycles"))
+    sequence.cycles = static_cast<Cycles>(v->choice({"merge", "keep"}));
   if (const YamlValue* v = map.find("clip_margin")) sequence.clip_margin = v->number({0, 1});
   if (const YamlValue* v = map.find("bound"))
     sequence.bound = static_cast<layers::BoundKind>(v->choice({"box8", "dop14", "dop26"}));
@@ -163,6 +165,7 @@ SequenceFile read_sequence_file(const std::string& file) {
   read_settings(map, result.settings);
   if (const YamlValue* layers = map.find("layers"))
     for (const YamlValue& item : layers->items()) result.layers.push_back(read_layer(item));
+  if (const YamlValue* order = map.find("order")) result.order = read_layer_pairs(*order);
   result.recipe = read_scene_recipe(map);
   map.finish();
   return result;

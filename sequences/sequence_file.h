@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sequences/layer_pairs.h"
 #include "sequences/scene_recipe.h"
 #include "sequences/sequence.h"
 
@@ -21,6 +22,7 @@ struct SequenceFile {
   Sequence settings;  ///< without scene and layers
   SceneRecipe recipe;
   std::vector<LayerEntry> layers;  ///< empty: one per moving or top-level node
+  std::vector<LayerPairEntry> order;
 };
 
 /// Reads and checks the whole file, and that the assets it names are there. Throws InputError.

@@ -5,6 +5,7 @@
 #include <map>
 
 #include "layers/check.h"
+#include "layers/effects.h"
 #include "sequences/draw_instant.h"
 #include "sequences/layer_planning.h"
 
@@ -29,23 +30,27 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::vector<int> order_layers(const Pipeline& pipeline, const std::vector<LayerState>& states) {
-  if (states.empty()) return {};
-  std::vector<layers::WorldBounds> bounds;
-  bounds.reserve(states.size());
-  for (const LayerState& state : states) bounds.push_back(layers::bounds_of(state.world_points));
-  return layers::back_to_front(layers::dvec3(states.front().camera.world_from_camera[3]),
-                               pipeline.layers.layers, bounds);
+/// What the policy `reference` would render for this frame: every layer in view, without growth.
+std::int64_t reference_pixels(const Pipeline& pipeline, const std::vector<LayerState>& states,
+                              const FrameOrder& order) {
+  std::int64_t pixels = 0;
+  for (const int layer : order.back_to_front)
+    pixels +=
+        cost_of(pipeline.layers.layers[layer], placement_without_growth(pipeline, states[layer]).size_px)
+            .pixels;
+  return pixels;
 }
 
-/// What the policy `reference` would render for this frame: every layer in view, without growth.
-std::int64_t reference_pixels(const Pipeline& pipeline, const std::vector<LayerState>& states) {
-  std::int64_t pixels = 0;
-  for (const LayerState& now : states)
-    if (now.touches_display)
-      pixels +=
-          cost_of(pipeline.layers.layers[now.layer], placement_without_growth(pipeline, now).size_px).pixels;
-  return pixels;
+/// A layer that another one draws in this frame, or an aggregate that does not exist in it, is out of view.
+LayerAssessment assess(const Pipeline& pipeline, PipelineState& state, const Layer& layer,
+                       const FrameReport& report) {
+  if (report.order.has_own_sprite(layer.id, layer.is_aggregate()))
+    return assess_layer(pipeline, state, layer.id, report.frame);
+  LayerAssessment not_shown;
+  not_shown.layer = layer.id;
+  not_shown.preferences = layer.preferences;
+  not_shown.has_sprite = state.memory[layer.id].then.has_value();
+  return not_shown;
 }
 
 /// Chooses the instant as of which the layer is drawn, and completes the decision by how that sprite is shown
@@ -82,10 +87,9 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
 }
 
 /// The sprites of this frame, back to front, each with the map that puts it in its place.
-std::vector<ShownSprite> sprites_shown(const PipelineState& state, const FrameReport& report,
-                                       const std::vector<int>& order) {
+std::vector<ShownSprite> sprites_shown(const PipelineState& state, const FrameReport& report) {
   std::vector<ShownSprite> shown;
-  for (const int layer : order) {
+  for (const int layer : report.order.back_to_front) {
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
@@ -152,7 +156,7 @@ chunker::CompositeResult draw_in_one_pass(const Pipeline& pipeline, const SceneF
                                           chunker::RenderCounters& counters) {
   std::vector<int> parts;
   for (const Layer& layer : pipeline.layers.layers)
-    parts.insert(parts.end(), layer.parts.begin(), layer.parts.end());
+    if (!layer.is_aggregate()) parts.insert(parts.end(), layer.parts.begin(), layer.parts.end());
   SpritePlacement whole_display;
   whole_display.size_px = pipeline.settings.view.display_px;
   const chunker::RenderResult result =
@@ -192,30 +196,40 @@ Pipeline::Pipeline(const layers::Scene& scene_in, const layers::LayerSet& layers
     : scene(scene_in), layers(layers_in), settings(settings_in) {
   for (const Layer& layer : layers.layers)
     bounds.push_back(layers::make_layer_bound(scene, layer, settings.bound));
+  sorts_visibility = layers::calls_for_visibility_sort(layers.layers);
 }
 
-FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
+Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in,
+                   std::vector<layers::LayerBound> bounds_in)
+    : scene(authored.scene),
+      layers(layers_in),
+      settings(authored.settings),
+      bounds(std::move(bounds_in)),
+      sorts_visibility(authored.sorts_visibility) {}
+
+FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared) {
-  TALISMAN_CHECK_EQ(state.memory.size(), pipeline.layers.layers.size());
+  TALISMAN_CHECK_EQ(state.memory.size(), with_aggregates(authored, state).layers.layers.size());
   FrameReport report;
   report.frame = frame;
-  report.render_by_layer.resize(state.memory.size());
 
   // Decide: no pixel is touched up to and including the plan.
   const Stopwatch plan_watch;
-  if (pipeline.settings.regulator.policy != regulator::Policy::Oracle) forget_states_before(state, frame);
-  const std::vector<LayerState>& states = states_at(pipeline, state, frame);
-  const std::vector<int> order = order_layers(pipeline, states);
+  if (authored.settings.regulator.policy != regulator::Policy::Oracle) forget_states_before(state, frame);
+  report.order = order_layers(authored, state, frame);  // may merge layers into aggregates
+  const Pipeline& pipeline = with_aggregates(authored, state);
+  report.render_by_layer.resize(pipeline.layers.layers.size());
   for (const Layer& layer : pipeline.layers.layers) {
-    report.assessments.push_back(assess_layer(pipeline, state, layer.id, frame));
+    report.assessments.push_back(assess(pipeline, state, layer, report));
     report.layers_assessed += report.assessments.back().in_view && report.assessments.back().has_sprite;
   }
   report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
   double bookkeeping_ms = plan_watch.ms();
-  report.pixels_reference = reference_pixels(pipeline, states);
+  report.pixels_reference = reference_pixels(pipeline, states_at(pipeline, state, frame), report.order);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);
-  report.shown = sprites_shown(state, report, order);
+  explain_order(pipeline, report);
+  report.shown = sprites_shown(state, report);
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.

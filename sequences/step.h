@@ -25,6 +25,7 @@
 #include "layers/state.h"
 #include "regulator/plan.h"
 #include "sequences/sprite_compression.h"
+#include "sequences/aggregates.h"
 #include "warp/fit.h"
 
 namespace talisman::sequences {
@@ -39,6 +40,8 @@ struct Settings {
   layers::PlacementOptions placement;  ///< resolution_scale is multiplied with the layer's own
   chunker::RenderOptions render;
   std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are
+  std::vector<layers::ExplicitPair> explicit_order;        ///< of layer ids; before geometry
+  Cycles cycles = Cycles::Merge;
   double fps = 24;
   int frames = 0;  ///< length of the sequence, however few of its frames are asked for; needed by the
                    ///< policies that look ahead (Lookahead, Oracle), whose runs it ends
@@ -47,10 +50,13 @@ struct Settings {
 /// What does not change during a run. Keeps references.
 struct Pipeline {
   Pipeline(const layers::Scene& scene, const layers::LayerSet& layers, const Settings& settings);
+  /// The same with more layers behind those of `authored`: aggregates.
+  Pipeline(const Pipeline& authored, const layers::LayerSet& layers, std::vector<layers::LayerBound> bounds);
   const layers::Scene& scene;
   const layers::LayerSet& layers;
   Settings settings;
   std::vector<layers::LayerBound> bounds;  ///< one per layer
+  bool sorts_visibility = false;           ///< the effect visibility_sort is called for
 };
 
 /// What is remembered of one layer: how it was at the instant as of which it was last rendered.
@@ -67,14 +73,16 @@ struct LayerMemory {
 struct CapturedFrame {
   std::vector<layers::LayerState> states;                          ///< by layer id
   std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
+  int generation = -1;  ///< OrderMemory::generation: aggregates that exist since then are not captured yet
 };
 
 /// All that survives a frame.
 struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline) : memory(pipeline.layers.layers.size()) {}
-  std::vector<LayerMemory> memory;
-  chunker::SpriteStore sprites;         ///< as the compositor shows them: decompressed if they are compressed
-  CompressedSprites compressed;         ///< empty unless Settings::compression asks for it
+  std::vector<LayerMemory> memory;  ///< by layer id, aggregates behind the author's layers
+  chunker::SpriteStore sprites;     ///< as the compositor shows them: decompressed if they are compressed
+  CompressedSprites compressed;     ///< empty unless Settings::compression asks for it
+  OrderMemory order;
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
 };
 
@@ -92,17 +100,19 @@ struct ShownSprite {
 
 struct FrameReport {
   int frame = 0;
+  FrameOrder order;
   regulator::FramePlan plan;
-  std::vector<regulator::LayerAssessment> assessments;  ///< by layer id
-  std::vector<ShownSprite> shown;                       ///< back to front
-  int layers_assessed = 0;                              ///< in view with an old sprite: fitted and judged
+  std::vector<regulator::LayerAssessment>
+      assessments;                    ///< by layer id, aggregates behind the author's layers
+  std::vector<ShownSprite> shown;     ///< back to front
+  int layers_assessed = 0;            ///< in view with an old sprite: fitted and judged
   std::int64_t pixels_reference = 0;  ///< texels that `reference` would render for this frame
   chunker::RenderCounters render;     ///< summed over the layers rendered for this frame
   std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
   chunker::CompositeCounters composite;
   std::optional<CompressionReport> compression;  ///< of the sprites drawn for this frame, and of its reads
   std::int64_t sprite_bytes = 0;                 ///< in the store after this frame
-  int late_renders = 0;           ///< sprites drawn now that had been planned for an earlier frame
+  int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
   StageTimes times;
   chunker::Frame picture;  ///< empty when only planned
 };

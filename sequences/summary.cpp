@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // summary.json and the table that the tool prints.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -71,6 +72,8 @@ Json layers_json(const Summary& s) {
                     {"parts", layer.parts},
                     {"polygons", layer.polygons},
                     {"renders", layer.renders},
+                    {"merged_renders", layer.merged_renders},
+                    {"aggregate", layer.is_aggregate},
                     {"frames_shown", layer.frames_shown},
                     {"update_rate", layer.update_rate(frames)},
                     {"mean_geometric_px", layer.mean_geometric_px()},
@@ -85,6 +88,41 @@ Json effects_json(const Summary& s) {
     json[std::string(layers::name(s.effects[e].effect))] = {
         {"called", s.effects[e].called}, {"why", s.effects[e].why}, {"passes", s.effect_passes[e]}};
   return json;
+}
+
+/// Totals over the frames in which it was sorted; null if there are none.
+Json visibility_json(const Summary& s) {
+  layers::VisibilityCounters sum;
+  std::int64_t frames = 0, cyclic_frames = 0, merged_parts = 0;
+  double sort_ms = 0, slowest_ms = 0;
+  for (const FrameLine& line : s.frames) {
+    if (!line.visibility) continue;
+    const layers::VisibilityCounters& c = line.visibility->counters;
+    ++frames;
+    cyclic_frames += c.merged_components > 0;
+    sum.queries += c.queries, sum.pairs += c.pairs, sum.exact_tests += c.exact_tests, sum.swaps += c.swaps;
+    sum.merged_layers += c.merged_layers;
+    merged_parts += line.visibility->merged_parts;
+    sort_ms += line.visibility->sort_ms;
+    slowest_ms = std::max(slowest_ms, line.visibility->sort_ms);
+  }
+  if (frames == 0) return nullptr;
+  return {{"frames_sorted", frames},
+          {"frames_with_cycles", cyclic_frames},
+          {"queries", sum.queries},
+          {"pairs", sum.pairs},
+          {"exact_tests", sum.exact_tests},
+          {"swaps", sum.swaps},
+          {"merged_layers", sum.merged_layers},
+          {"merged_parts", merged_parts},
+          {"sort_ms", sort_ms},
+          {"slowest_sort_ms", slowest_ms}};
+}
+
+double sort_ms(const Summary& s) {
+  double sum = 0;
+  for (const FrameLine& line : s.frames) sum += line.visibility ? line.visibility->sort_ms : 0;
+  return sum;
 }
 
 std::string layer_rows(const Summary& s) {
@@ -161,11 +199,13 @@ std::string json_of(const Summary& s) {
                {"chunks_rendered", measured(s.total(&FrameLine::chunks_rendered))},
                {"chunks_clear", measured(s.total(&FrameLine::chunks_clear))},
                {"effects", effects_json(s)},
+               {"visibility", visibility_json(s)},
                {"modelled_ms", measured(frames > 0 ? s.total(&FrameLine::modelled_ms) / frames : 0)},
                {"modelled_profile", "talisman-1996"},
                {"planning_us_per_layer_and_frame", s.planning_us_per_layer_and_frame()},
                {"wall_ms",
                 {{"plan", s.total(&FrameLine::plan_ms)},
+                 {"sort", sort_ms(s)},
                  {"render", measured(s.total(&FrameLine::render_ms))},
                  {"composite", measured(s.total(&FrameLine::composite_ms))},
                  {"io", measured(s.total(&FrameLine::io_ms))}}}};

@@ -372,8 +372,8 @@ TEST(MakeLayerBound, EachPartHasItsOwnPolyhedronWhereTheLayerAsksForIt) {
       for (const layers::LayerBound& body : bound.bodies) {
         layers::Layer alone = layer;
         alone.preferences.bound_each_part = false;
-        alone.parts = {body.part};
-        alone.rigid_node = scene.parts[body.part].node;
+        alone.parts = body.parts;
+        alone.rigid_node = scene.parts[body.parts[0]].node;
         const auto expected =
             layers::world_points(frame, alone, layers::make_layer_bound(scene, alone, kind));
         for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(points.at(first + i), expected[i]);

@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/visibility_relations.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "layers/convex.h"
+
+namespace talisman::layers {
+
+namespace {
+
+/// A plane is kept if the pair can move like this for so many frames before it fails; otherwise a better one
+/// is searched for.
+constexpr double kFramesAhead = 8;
+/// The same for pairs whose motion is not known yet, relative to the smaller body.
+constexpr double kFirstSlack = 0.02;
+/// And a plane is kept while it leaves that share of the slack that it had when it was found: for pairs that
+/// are too close for a lasting one.
+constexpr double kStillGood = 0.5;
+/// The margin of the extents: so many frames of their change, at least that share of their width for new
+/// bodies, at most that share.
+constexpr float kMarginFrames = 12, kFirstMargin = 0.05f, kMostMargin = 0.25f;
+/// The tree is built anew when its nodes have grown by this factor.
+constexpr double kWorn = 1.3;
+/// Above the rounding of a support, relative to the largest coordinate.
+constexpr double kRounding = 1e-14;
+constexpr double kLargest = 1e60;
+
+/// What one pass over the points of a body finds.
+struct Pass {
+  WorldBounds bounds;
+  double step2 = 0, reach = 0;
+  bool usable = true;
+};
+
+Pass pass_over(std::span<const dvec3> points, std::span<const dvec3> before) {
+  Pass pass;
+  dvec3 lo = pass.bounds.lo, hi = pass.bounds.hi;
+  double bad = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const dvec3& p = points[i];
+    const dvec3 d = p - before[i];
+    pass.step2 = std::max(pass.step2, d.x * d.x + d.y * d.y + d.z * d.z);
+    lo = {std::min(lo.x, p.x), std::min(lo.y, p.y), std::min(lo.z, p.z)};
+    hi = {std::max(hi.x, p.x), std::max(hi.y, p.y), std::max(hi.z, p.z)};
+    bad += p.x * 0 + p.y * 0 + p.z * 0;  // NaN for what is not finite, which min and max may pass over
+  }
+  pass.bounds = {lo, hi};
+  pass.reach = std::max({-lo.x, -lo.y, -lo.z, hi.x, hi.y, hi.z});
+  pass.usable = bad == 0 && !points.empty() && pass.reach <= kLargest;
+  return pass;
+}
+
+struct Plane {
+  double h = HUGE_VAL;
+  dvec3 normal{0, 0, 0};
+};
+
+/// The best plane across an axis between a and conv({e} ∪ b).
+Plane axis_plane(const WorldBounds& a, const WorldBounds& b, const dvec3& eye) {
+  Plane best;
+  for (int k = 0; k < 3; ++k) {
+    const double up = a.hi[k] - std::min(b.lo[k], eye[k]), down = std::max(b.hi[k], eye[k]) - a.lo[k];
+    if (std::min(up, down) >= best.h) continue;
+    best = {std::min(up, down), {0, 0, 0}};
+    best.normal[k] = up <= down ? 1 : -1;
+  }
+  return best;
+}
+
+double largest_along(const dvec3& n, std::span<const dvec3> points) {
+  double most = -HUGE_VAL;
+  for (const dvec3& p : points) most = std::max(most, p.x * n.x + p.y * n.y + p.z * n.z);
+  return most;
+}
+
+void erase_value(std::vector<int>& values, int value) {
+  const auto at = std::find(values.begin(), values.end(), value);
+  *at = values.back();
+  values.pop_back();
+}
+
+float largest_change(const DirectionBox& a, const DirectionBox& b) {
+  float most = 0;
+  for (int k = 0; k < 3; ++k)
+    most = std::max({most, std::fabs(a.lo[k] - b.lo[k]), std::fabs(a.hi[k] - b.hi[k])});
+  return most;
+}
+
+float width(const DirectionBox& box) {
+  return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
+}
+
+}  // namespace
+
+int OcclusionRelations::add_body(int layer, OrderGroup group) {
+  if (free_bodies_.empty()) {
+    free_bodies_.push_back(static_cast<int>(bodies_.size()));
+    bodies_.emplace_back();
+    layer_of_.push_back(-1);
+    travel_.push_back(0);
+    widened_.emplace_back();
+    mark_.push_back(0);
+  }
+  const int body = free_bodies_.back();
+  free_bodies_.pop_back();
+  bodies_[body] = Body{};
+  bodies_[body].group = group;
+  layer_of_[body] = layer;
+  other_bodies_ = true;
+  return body;
+}
+
+void OcclusionRelations::remove_body(int body) {
+  while (!bodies_[body].pairs.empty()) drop_pair(bodies_[body].pairs.back());
+  bodies_[body] = Body{};
+  widened_[body] = DirectionBox{};
+  layer_of_[body] = -1;
+  free_bodies_.push_back(body);
+  other_bodies_ = true;
+}
+
+void OcclusionRelations::place_eye(const dvec3& eye) {
+  eye_step_ = seen_before_ ? glm::length(eye - eye_) : 0;
+  eye_travel_ += eye_step_;
+  eye_ = eye, seen_before_ = true;
+}
+
+void OcclusionRelations::place_body(int body, std::span<const dvec3> points) {
+  Body& b = bodies_[body];
+  const bool anew = b.points.size() != points.size();
+  const Pass pass = pass_over(points, anew ? points : std::span<const dvec3>(b.points));
+  const DirectionBox before = b.extents;
+  if (pass.usable) {
+    b.placed_anew = b.placed_anew || anew;
+    b.points.assign(points.begin(), points.end());
+    b.bounds = pass.bounds, b.reach = pass.reach;
+    const dvec3 d = b.bounds.hi - b.bounds.lo;
+    b.size = std::max({d.x, d.y, d.z});
+    b.step = std::sqrt(pass.step2);
+    travel_[body] += b.step;
+    b.extents = directions_to(eye_, b.bounds.lo, b.bounds.hi);
+  } else {
+    b.placed_anew = true;
+    b.points.clear();
+    b.bounds = WorldBounds{}, b.extents = DirectionBox{};
+  }
+  if (b.extents.empty() ? !widened_[body].empty() : b.placed_anew || !contains(widened_[body], b.extents))
+    widen(body, before);
+}
+
+/// Gives the body a new place in the tree, `before` being its extents in the last frame.
+void OcclusionRelations::widen(int body, const DirectionBox& before) {
+  to_look_up_.push_back(body);
+  const DirectionBox& now = bodies_[body].extents;
+  other_bodies_ = other_bodies_ || widened_[body].empty() || now.empty();
+  widened_[body] = now;
+  if (now.empty()) return;
+  const float margin = before.empty()
+                           ? kFirstMargin * width(now)
+                           : std::min(kMostMargin * width(now), kMarginFrames * largest_change(before, now));
+  for (int k = 0; k < 3; ++k) {
+    widened_[body].lo[k] -= margin;
+    widened_[body].hi[k] += margin;
+  }
+}
+
+void OcclusionRelations::add_pair(int first, int second) {
+  if (free_pairs_.empty()) {
+    free_pairs_.push_back(static_cast<int>(pairs_.size()));
+    pairs_.emplace_back();
+    witnesses_.emplace_back();
+  }
+  const int pair = free_pairs_.back();
+  free_pairs_.pop_back();
+  pairs_[pair] = Pair{first, second};
+  witnesses_[pair] = Witnesses{};
+  bodies_[first].pairs.push_back(pair);
+  bodies_[second].pairs.push_back(pair);
+}
+
+void OcclusionRelations::drop_pair(int pair) {
+  erase_value(bodies_[pairs_[pair].first].pairs, pair);
+  erase_value(bodies_[pairs_[pair].second].pairs, pair);
+  pairs_[pair] = Pair{};
+  free_pairs_.push_back(pair);
+}
+
+void OcclusionRelations::look_up(int body, VisibilityCounters& counters) {
+  Body& b = bodies_[body];
+  ++mark_count_;
+  mark_[body] = mark_count_;
+  for (std::size_t i = b.pairs.size(); i-- > 0;) {
+    const int pair = b.pairs[i];
+    const int other = pairs_[pair].first == body ? pairs_[pair].second : pairs_[pair].first;
+    if (!overlap(widened_[body], widened_[other]))
+      drop_pair(pair);
+    else
+      mark_[other] = mark_count_;
+    if (!b.placed_anew || pairs_[pair].first < 0) continue;
+    pairs_[pair].term = -1;
+    witnesses_[pair] = Witnesses{};
+  }
+  if (widened_[body].empty()) return;
+  ++counters.queries;
+  found_.clear();
+  tree_.query(widened_[body], widened_, found_);
+  for (const int other : found_)
+    if (mark_[other] != mark_count_ && bodies_[other].group == b.group && layer_of_[other] != layer_of_[body])
+      add_pair(body, other);
+}
+
+OcclusionRelations::Answer OcclusionRelations::occludes(const Body& front, const Body& behind,
+                                                        Witness& witness, VisibilityCounters& counters,
+                                                        bool& exact) const {
+  const double eye_reach = std::max({std::fabs(eye_.x), std::fabs(eye_.y), std::fabs(eye_.z)});
+  const double smaller = std::min(front.size, behind.size);
+  const double t = touch_ * smaller + kRounding * std::max({front.reach, behind.reach, eye_reach});
+  const double steps = front.step + behind.step + eye_step_;
+  double wanted = std::max(kFramesAhead * steps, kFirstSlack * smaller);
+  const Plane axis = axis_plane(front.bounds, behind.bounds, eye_);
+  if (t - axis.h >= wanted) return {false, t - axis.h};
+  exact = true;
+  dvec3& plane = witness.plane;
+  if (plane != dvec3{0, 0, 0}) {
+    const double low = largest_along(plane, front.points);
+    const double high = -std::max(largest_along(-plane, behind.points), glm::dot(-plane, eye_));
+    wanted = std::min(wanted, kStillGood * witness.found_slack);
+    if (t - (low - high) >= wanted) return {false, t - (low - high)};
+  }
+  const DepthDecision d = decide_depth({front.points}, {behind.points, &eye_}, t, plane);
+  if (!d.decided) ++counters.undecided;
+  plane = d.normal;
+  witness.found_slack = d.deeper ? HUGE_VAL : t - d.upper;
+  return d.deeper ? Answer{true, d.lower - t} : Answer{false, t - d.upper};
+}
+
+void OcclusionRelations::test(int index, double travel, VisibilityCounters& counters) {
+  Pair& pair = pairs_[index];
+  const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
+  auto& [first, second] = witnesses_[index];
+  bool exact = false;
+  const auto renew = [&](const Body& front, const Body& behind, Witness& witness, bool& occluded) {
+    if (travel <= witness.term) return;
+    const Answer answer = occludes(front, behind, witness, counters, exact);
+    // The tolerance itself follows the bodies' sizes, by twice their steps at most.
+    witness.term = travel + std::max(0.0, answer.slack) * 0.999 / (1 + 2 * touch_);
+    occluded = answer.occludes;
+  };
+  renew(a, b, first, pair.first_occludes);
+  renew(b, a, second, pair.second_occludes);
+  counters.exact_tests += exact;
+  pair.term = std::min(first.term, second.term);
+}
+
+void OcclusionRelations::update(VisibilityCounters& counters) {
+  counters.bodies += static_cast<int>(bodies_.size() - free_bodies_.size());
+  if (other_bodies_ || (!to_look_up_.empty() && tree_.refit(widened_) > kWorn)) tree_.build(widened_);
+  other_bodies_ = false;
+  for (const int body : to_look_up_) look_up(body, counters);
+  for (const int body : to_look_up_) bodies_[body].placed_anew = bodies_[body].points.empty();
+  to_look_up_.clear();
+  for (int i = 0; i < static_cast<int>(pairs_.size()); ++i) {
+    const Pair& pair = pairs_[i];
+    if (pair.first < 0) continue;
+    const double travel = travel_[pair.first] + travel_[pair.second] + eye_travel_;
+    if (travel > pair.term) test(i, travel, counters);
+    counters.edges += pair.first_occludes + pair.second_occludes;
+  }
+  counters.pairs += static_cast<int>(pairs_.size() - free_pairs_.size());
+}
+
+}  // namespace talisman::layers

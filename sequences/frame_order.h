@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// In which order are the sprites of one frame composited, and which layers share one? The data; how it comes
+/// about is in sequences/aggregates.h.
+
+#include <string>
+#include <vector>
+
+#include "layers/visibility.h"
+
+namespace talisman::sequences {
+
+/// What happens to layers that occlude each other in a cycle.
+enum class Cycles {
+  Merge,  ///< drawn into one sprite while the cycle lasts: always right
+  Keep,   ///< each keeps its sprite, farthest point first: costs no rendering, and is wrong somewhere
+};
+
+/// An aggregate that exists in this frame.
+struct Merger {
+  int layer = -1;   ///< its id
+  std::string why;  ///< "a, b occlude each other", "a, b, c occlude each other in a cycle", …
+};
+
+struct FrameOrder {
+  std::vector<int> back_to_front;  ///< ids of all layers with a sprite of their own: in view and not merged
+  std::vector<int> merged_into;    ///< by layer id: the aggregate that draws it in this frame, -1: none
+  std::vector<int> split_from;     ///< by layer id: the aggregate that drew it until the last frame, -1: none
+  std::vector<Merger> mergers;     ///< in the order in which they are composited
+  bool sorted = false;             ///< false: the groups alone gave the order, and nothing was computed
+  layers::VisibilityCounters counters;
+  int merged_parts = 0;  ///< of all aggregates together
+  double sort_ms = 0;    ///< wall time, bounds and aggregates included
+
+  /// Is `layer` an author's layer that no aggregate draws, or an aggregate of this frame?
+  bool has_own_sprite(int layer, bool is_aggregate) const;
+  /// The aggregate `layer`, or null if it does not exist in this frame.
+  const Merger* merger(int layer) const;
+};
+
+}  // namespace talisman::sequences
