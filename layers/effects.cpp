@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "layers/animation.h"
+#include "layers/light_change.h"
+
 namespace talisman::layers {
 
 namespace {
@@ -36,12 +39,14 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
       if (part.skin >= 0) return "part '" + part.name + "' has a skin";
       break;
     case Effect::LayerResolution:
+    case Effect::ColorWarp:
       break;  // asked for by layers, not by parts
   }
   return {};
 }
 
-std::string call_of(const Scene& scene, const Layer& layer, Effect effect) {
+std::string call_of(const Scene& scene, const Layer& layer, Effect effect, std::span<const int> carriers) {
+  if (effect == Effect::ColorWarp) return light_change_of(scene, layer, carriers).why;
   if (effect == Effect::LayerResolution)
     return layer.preferences.resolution_scale != 1 ? "layer '" + layer.name + "' has its own resolution" : "";
   for (const int part : layer.parts)
@@ -64,6 +69,8 @@ std::string why_not(const Scene& scene, Effect effect) {
       return "no part has a skin";
     case Effect::LayerResolution:
       return "every layer has the display's resolution";
+    case Effect::ColorWarp:
+      return "no light moves against a lit layer, and no highlight moves";
   }
   return {};
 }
@@ -86,16 +93,19 @@ std::string_view name(Effect effect) {
       return "skinning";
     case Effect::LayerResolution:
       return "layer_resolution";
+    case Effect::ColorWarp:
+      return "color_warp";
   }
   return "?";
 }
 
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers) {
+  const std::vector<int> carriers = moving_carriers(scene);
   std::vector<EffectCall> table;
   for (const Effect effect : kAllEffects) {
     EffectCall call{effect, false, why_not(scene, effect), {}};
     for (const Layer& layer : layers) {
-      std::string why = call_of(scene, layer, effect);
+      std::string why = call_of(scene, layer, effect, carriers);
       if (why.empty()) continue;
       if (!call.called) call.why = std::move(why);
       call.called = true;

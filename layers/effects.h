@@ -25,10 +25,11 @@ enum class Effect {
   Translucency,       ///< opacity < 1 or a texture with alpha
   Skinning,           ///< some drawn part has a skin
   LayerResolution,    ///< some layer asks for a resolution other than the display's
+  ColorWarp,  ///< the light on some layer can change: colour warp and photometric fiducial [LS97 4.3, 5.2]
 };
 inline constexpr std::array kAllEffects = {Effect::Texture,           Effect::MipFilter,    Effect::Lighting,
                                            Effect::SpecularHighlight, Effect::Translucency, Effect::Skinning,
-                                           Effect::LayerResolution};
+                                           Effect::LayerResolution,   Effect::ColorWarp};
 std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
 
 struct EffectCall {

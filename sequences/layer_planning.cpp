@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "fiducials/fiducials.h"
+#include "sequences/light_planning.h"
 #include "warp/shade.h"
 
 namespace talisman::sequences {
@@ -116,6 +116,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
   else
     assessment.fitted = warp::fit(then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
   assessment.fiducials = fiducials::assess(then, now, placement, matched, assessment.fitted);
+  assess_light_and_faces(pipeline, then, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));

@@ -35,6 +35,13 @@ void add_run_options(CLI::App& command, CommandLine& line) {
                      "direct, reference, hold, interpolate, threshold, budget, lookahead or oracle");
   command.add_option("--geometric-px", line.geometric_px,
                      "threshold of the geometric fiducial, pixels; 0: reuse only what is identical");
+  command.add_option("--photometric", line.photometric,
+                     "threshold of the photometric fiducial, linear light, 1 is white; 0: not regulated");
+  command.add_option("--light-angle-deg", line.light_angle_deg,
+                     "threshold of the angle by which a light moves about a layer; 0: not regulated");
+  command.add_option("--turned-px", line.turned_px,
+                     "threshold of the size of a side that has turned to the eye, pixels; 0: not regulated");
+  command.add_option("--color-warp", line.color_warp, "on, or off: as hardware without colour multipliers");
   command.add_option("--hold", line.hold, "N of the policies hold and interpolate");
   command.add_option("--lookahead", line.lookahead,
                      "N of the policy lookahead: frames ahead as of which a sprite may be drawn");
@@ -137,8 +144,8 @@ struct Commands {
   }
 
   void add_experiments() {
-    CLI::App* warps_command =
-        app.add_subcommand("warps", "update rate against error of every warp, and picture quality at one rate");
+    CLI::App* warps_command = app.add_subcommand(
+        "warps", "update rate against error of every warp, and picture quality at one rate");
     warps_command->add_option("--object", warps.object, "name or file of one object (all)");
     warps_command->add_option("--bound", warps.bound, "characteristic polyhedron: box8, dop14 or dop26");
     warps_command->add_option("--out", warps.out, "result folder (out/warps)");
@@ -146,7 +153,8 @@ struct Commands {
     warps_command->callback([this] { exit_code = run_warps(warps, std::cout); });
 
     CLI::App* accuracy_command = app.add_subcommand("accuracy", "what accuracy costs in time");
-    accuracy_command->add_flag("--solvers", accuracy.solvers, "every solver of warps: time, error, stability");
+    accuracy_command->add_flag("--solvers", accuracy.solvers,
+                               "every solver of warps: time, error, stability");
     accuracy_command->add_option("--inputs", accuracy.inputs, "boxes per number of points");
     accuracy_command->add_option("--out", accuracy.out, "result folder (out/accuracy)");
     accuracy_command->add_option("--progress", accuracy.progress, "auto, bar, plain or none");

@@ -20,6 +20,8 @@ struct CommandLine {
   std::string size;    ///< "WxH"
   std::string policy, warp, bound, shading, format = "png", progress = "auto";
   std::optional<double> geometric_px, cutoff_px, expected_reuse, resolution;
+  std::optional<double> photometric, light_angle_deg, turned_px;
+  std::string color_warp;  ///< "on", "off"
   std::optional<int> hold, lookahead;
   std::optional<std::int64_t> budget_polygons, budget_pixels;
   int threads = 0;  ///< 0: all cores
