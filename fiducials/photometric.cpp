@@ -202,9 +202,13 @@ void follow_lights(const LayerState& then, const LayerState& now, const LayerBou
 }  // namespace
 
 double angle_between_rad(const dvec3& a, const dvec3& b) {
-  const double angle = std::atan2(glm::length(cross(a, b)), dot(a, b));
-  const bool known = a != dvec3(0.0) && b != dvec3(0.0) && angle <= kWorstAngle;  // false for NaN
-  return known ? angle : kWorstAngle;
+  // In units of their largest entries: no product over- or underflows.
+  const auto largest = [](const dvec3& v) {
+    return std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  };
+  const dvec3 u = a / largest(a), v = b / largest(b);  // NaN without length
+  const double angle = std::atan2(glm::length(cross(u, v)), dot(u, v));
+  return angle <= kWorstAngle ? angle : kWorstAngle;
 }
 
 double position_change_rad(const dvec3& then_offset, const dvec3& now_offset, double radius) {
