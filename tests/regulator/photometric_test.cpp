@@ -86,6 +86,8 @@ TEST(BenefitPx, CountsLightAtTheStatedRateAndTurnedSidesInPixels) {
   layer.preferences.importance.photometric = 0.5;
   EXPECT_DOUBLE_EQ(benefit_px(layer), 2);
   layer.fiducials.turned.px = 10;
+  EXPECT_DOUBLE_EQ(benefit_px(layer), 2) << "a fiducial that is not computed does not count";
+  layer.fiducials.turned.computed = true;
   EXPECT_DOUBLE_EQ(benefit_px(layer), 12);
   layer.preferences.importance.photometric = layer.preferences.importance.visibility = 0;
   EXPECT_EQ(benefit_px(layer), 0);
