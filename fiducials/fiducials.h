@@ -3,11 +3,14 @@
 
 /// How wrong is the old sprite, warped, for the frame now? [LS97 5]
 ///
-/// Geometric:  F = maxᵢ ‖pᵢ - W p̂ᵢ‖, pixels, best 0 [LS97 5.1].
-/// Sampling:   singular values of the Jacobian of the map from sprite to display, [LS97 5.3]: how many
-/// display pixels one
-///             texel is stretched or squeezed to; no unit, best 1.
-/// Visibility: how far a side at which the sprite was cut off has come into view, pixels, best 0 [LS97 5.4].
+/// - Geometric: F = maxᵢ ‖pᵢ - W p̂ᵢ‖, pixels, best 0 [LS97 5.1].
+/// - Photometric: F = maxᵢ ‖Cᵢ - W_C Ĉᵢ‖ of the shaded characteristic points, linear light, best 0; and the
+///   angle by which a light has moved about the layer, radians, best 0 [LS97 5.2], fiducials/photometric.h.
+/// - Sampling: singular values of the Jacobian of the map from sprite to display: how many display pixels one
+///   texel is stretched or squeezed to; no unit, best 1 [LS97 5.3].
+/// - Visibility: how far a side at which the sprite was cut off has come into view, pixels, best 0,
+///   fiducials/visibility.h; and how large a side of the layer has turned to the eye, pixels, best 0,
+///   fiducials/turned_faces.h [LS97 5.4].
 ///
 /// No figure is ever non-finite: what is unknown or unbounded is warp::kHugePx.
 ///
@@ -23,6 +26,7 @@
 namespace talisman::fiducials {
 
 using layers::dvec2;
+using layers::dvec3;
 
 struct Geometric {
   double px =
@@ -47,10 +51,40 @@ struct Visibility {
   dvec2 where_px{0, 0};
 };
 
+/// One light of the scene, or none, or the eye.
+struct LightRef {
+  static constexpr int kNone = -1, kEye = -2;
+  int index = kNone;           ///< into LayerState::lights, or one of the above
+  std::string_view name = "";  ///< left to who knows the scene
+};
+
+struct Photometric {
+  bool computed = false;
+  std::string_view why_not = "";
+  dvec3 multiplier{1, 1, 1};   ///< the colour warp W_C, 0 … 1 per channel; 1 at rest
+  double color = 0;            ///< largest ‖C - W_C Ĉ‖: linear light, 1 is white, at most √3
+  dvec2 where_px{0, 0};        ///< display position now of the worst point
+  int point = -1;              ///< characteristic point; -1: none differs
+  LightRef color_light;        ///< the light that changed most at that point
+  double light_angle_rad = 0;  ///< largest change of a light's direction about the layer, 0 … π
+  LightRef angle_light;        ///< that light, or the eye as seen by highlights
+  double light_distance = 0;   ///< largest change of a light's distance, relative to the larger one, 0 … 1
+};
+
+struct TurnedFaces {
+  bool computed = false;
+  std::string_view why_not = "";
+  int count = 0;         ///< faces of the polyhedron that faced away from the eye and face it now
+  double px = 0;         ///< square root of the largest area on the display of one of them
+  dvec2 where_px{0, 0};  ///< the middle of that face's part on the display
+};
+
 struct Report {
   Geometric geometric;
   Sampling sampling;
   Visibility visibility;
+  Photometric photometric{};  ///< not by `assess`: see fiducials/photometric.h
+  TurnedFaces turned{};       ///< not by `assess`: see fiducials/turned_faces.h
 };
 
 /// Singular values (largest first) of the 2×2 matrix | a b ; c d |, closed form [Blinn 96]:
@@ -66,8 +100,8 @@ dvec2 singular_values(double a, double b, double c, double d);
 /// at its best. Cost: 20 ns, perspective about 1 µs.
 Sampling sampling_over(const warp::Warp& warp, const layers::RectD& domain_px);
 
-/// All fiducials of showing at `now` the sprite that was rendered at `then` with `placement`, carried by
-/// `fitted.warp`.
+/// Geometric, sampling and visibility fiducials of showing at `now` the sprite that was rendered at `then`
+/// with `placement`, carried by `fitted.warp`.
 Report assess(const layers::LayerState& then, const layers::LayerState& now,
               const layers::SpritePlacement& placement, const layers::Correspondences& matched,
               const warp::FitResult& fitted);

@@ -22,6 +22,7 @@ LayerPreferences strictest(LayerPreferences a, const LayerPreferences& b) {
   a.min_update_rate = std::max(a.min_update_rate, b.min_update_rate);
   a.max_update_rate = std::max(a.max_update_rate, b.max_update_rate);
   a.share_of_expected_motion = std::max(a.share_of_expected_motion, b.share_of_expected_motion);
+  a.motion_blur = std::min(a.motion_blur, b.motion_blur);
   return a;
 }
 

@@ -115,6 +115,18 @@ bool moves(const Track& track) {
   return std::visit([](const auto& motion) { return varying(motion); }, track.motion);
 }
 
+std::vector<int> moving_carriers(const Scene& scene) {
+  std::vector<int> carriers(scene.nodes.size(), -1);
+  std::vector<bool> moved(scene.nodes.size(), false);
+  for (const Track& track : scene.tracks)
+    if (moves(track)) moved.at(track.node) = true;
+  for (std::size_t i = 0; i < carriers.size(); ++i) {
+    const int parent = scene.nodes[i].parent;
+    carriers[i] = moved[i] ? static_cast<int>(i) : parent < 0 ? -1 : carriers.at(parent);
+  }
+  return carriers;
+}
+
 double end_s(const Track& track) {
   return std::visit([](const auto& motion) { return last_key_s(motion); }, track.motion);
 }

@@ -46,6 +46,10 @@ Transform transform_at(const Track& track, const Transform& without, double t_s)
 /// Does the transform change with time? False for tracks whose keys are all equal.
 bool moves(const Track& track);
 
+/// For each node the nearest node at or above it that a track moves; -1: it stands still in the world. What
+/// has the same carrier does not move against each other. Cost: O(nodes + tracks).
+std::vector<int> moving_carriers(const Scene& scene);
+
 /// Time of the last key, seconds; 0 for a spin.
 double end_s(const Track& track);
 

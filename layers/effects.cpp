@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "layers/animation.h"
+#include "layers/light_change.h"
+
 namespace talisman::layers {
 
 namespace {
@@ -39,6 +42,7 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
     case Effect::MotionBlur:
     case Effect::SpriteCompression:
     case Effect::VisibilitySort:
+    case Effect::ColorWarp:
       break;  // asked for by layers and runs, not by parts
   }
   return {};
@@ -58,7 +62,8 @@ const Layer* first_rival(std::span<const Layer> layers, const Layer& layer) {
 }
 
 std::string call_of(const Scene& scene, std::span<const Layer> layers, const Layer& layer, Effect effect,
-                    const RunEffects& run) {
+                    const RunEffects& run, std::span<const int> carriers) {
+  if (effect == Effect::ColorWarp) return light_change_of(scene, layer, carriers).why;
   if (effect == Effect::SpriteCompression)
     return run.compression_quality ? "the run asks for quality " + std::to_string(*run.compression_quality)
                                    : "";
@@ -98,6 +103,8 @@ std::string why_not(const Scene& scene, Effect effect) {
       return "the run does not ask for it";
     case Effect::VisibilitySort:
       return "no two layers are in one group";
+    case Effect::ColorWarp:
+      return "no light moves against a lit layer, and no highlight moves";
   }
   return {};
 }
@@ -126,6 +133,8 @@ std::string_view name(Effect effect) {
       return "sprite_compression";
     case Effect::VisibilitySort:
       return "visibility_sort";
+    case Effect::ColorWarp:
+      return "color_warp";
   }
   return "?";
 }
@@ -138,11 +147,12 @@ bool calls_for_visibility_sort(std::span<const Layer> layers) {
 
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers,
                                            const RunEffects& run) {
+  const std::vector<int> carriers = moving_carriers(scene);
   std::vector<EffectCall> table;
   for (const Effect effect : kAllEffects) {
     EffectCall call{effect, false, why_not(scene, effect), {}};
     for (const Layer& layer : layers) {
-      std::string why = call_of(scene, layers, layer, effect, run);
+      std::string why = call_of(scene, layers, layer, effect, run, carriers);
       if (why.empty()) continue;
       if (!call.called) call.why = std::move(why);
       call.called = true;

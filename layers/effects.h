@@ -29,11 +29,12 @@ enum class Effect {
   MotionBlur,         ///< some layer has an open shutter: sampled along its motion
   SpriteCompression,  ///< the run keeps its sprites compressed
   VisibilitySort,     ///< some layers can overlap, and the author's groups do not order them
+  ColorWarp,  ///< the light on some layer can change: colour warp and photometric fiducial [LS97 4.3, 5.2]
 };
 inline constexpr std::array kAllEffects = {
-    Effect::Texture,           Effect::MipFilter,     Effect::Lighting,        Effect::SpecularHighlight,
-    Effect::Translucency,      Effect::Skinning,      Effect::LayerResolution, Effect::MotionBlur,
-    Effect::SpriteCompression, Effect::VisibilitySort};
+    Effect::Texture,           Effect::MipFilter,      Effect::Lighting,        Effect::SpecularHighlight,
+    Effect::Translucency,      Effect::Skinning,       Effect::LayerResolution, Effect::MotionBlur,
+    Effect::SpriteCompression, Effect::VisibilitySort, Effect::ColorWarp};
 std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
 
 struct EffectCall {

@@ -41,20 +41,6 @@ class PartNames {
   std::unordered_map<std::string, std::vector<int>> by_name_;
 };
 
-/// For each node the nearest node at or above it that a track moves; -1: it stands still in the world. Parts
-/// with the same carrier do not move against each other.
-std::vector<int> moving_carriers(const Scene& scene) {
-  std::vector<int> carriers(scene.nodes.size(), -1);
-  std::vector<bool> moved(scene.nodes.size(), false);
-  for (const Track& track : scene.tracks)
-    if (moves(track)) moved.at(track.node) = true;
-  for (std::size_t i = 0; i < carriers.size(); ++i) {
-    const int parent = scene.nodes[i].parent;
-    carriers[i] = moved[i] ? static_cast<int>(i) : parent < 0 ? -1 : carriers.at(parent);
-  }
-  return carriers;
-}
-
 /// Deepest node at or above both; -1: none. A parent's index is below its children's.
 int common_ancestor(const Scene& scene, int a, int b) {
   while (a != b) (a > b ? a : b) = scene.nodes.at(std::max(a, b)).parent;

@@ -91,7 +91,12 @@ std::vector<int> face_with_normal(const std::vector<dvec3>& points, const dvec3&
   return face;
 }
 
-std::vector<std::array<int, 3>> make_topology(BoundKind kind) {
+struct Topology {
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<int> face_ends;
+};
+
+Topology make_topology(BoundKind kind) {
   // The cuts of a sphere in its cube (rounded): no two of them meet.
   Cuts cuts;
   if (kind == BoundKind::Dop14) cuts.corner.fill(0.6);
@@ -100,14 +105,30 @@ std::vector<std::array<int, 3>> make_topology(BoundKind kind) {
     for (auto& edges : cuts.edge) edges.fill(0.586);
   }
   const auto points = vertices({dvec3(-1.0), dvec3(1.0)}, cuts, kind);
-  std::vector<std::array<int, 3>> triangles;
+  Topology topology;
   for (int code = 0; code < 27; ++code) {
     const dvec3 n(code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1);
     if (!has_plane(kind, static_cast<int>(dot(n, n)))) continue;
     const auto face = face_with_normal(points, normalize(n));
-    for (std::size_t i = 2; i < face.size(); ++i) triangles.push_back({face[0], face[i - 1], face[i]});
+    for (std::size_t i = 2; i < face.size(); ++i)
+      topology.triangles.push_back({face[0], face[i - 1], face[i]});
+    topology.face_ends.push_back(static_cast<int>(topology.triangles.size()));
   }
-  return triangles;
+  return topology;
+}
+
+const Topology& topology_of(BoundKind kind) {
+  static const std::array<Topology, 3> kTopologies{
+      make_topology(BoundKind::Box8), make_topology(BoundKind::Dop14), make_topology(BoundKind::Dop26)};
+  return kTopologies[static_cast<int>(kind)];
+}
+
+/// Appends one polyhedron of the kind whose points follow `first` others.
+void append_topology(BoundKind kind, int first, Polyhedron& hull) {
+  const int first_triangle = static_cast<int>(hull.triangles.size());
+  for (const auto& [a, b, c] : topology_of(kind).triangles)
+    hull.triangles.push_back({a + first, b + first, c + first});
+  for (const int end : topology_of(kind).face_ends) hull.face_ends.push_back(first_triangle + end);
 }
 
 // ---- cuts: as deep as the points allow, then as shallow as the topology needs
@@ -185,6 +206,14 @@ Cuts cuts_for(std::span<const dvec3> points, const Box& box, BoundKind kind) {
 }
 
 bool is_finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+
+/// Scaled by its largest entry first: areas of a huge or tiny polyhedron have squares that over- or
+/// underflow.
+dvec3 unit_or_zero(const dvec3& v) {
+  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+  if (!(largest > 0 && std::isfinite(largest))) return dvec3(0.0);
+  return normalize(v / largest);
+}
 
 // ---- layers
 // ----------------------------------------------------------------------------------------------------
@@ -267,11 +296,9 @@ dmat4 axes_of(const SceneFrame& frame, int node) {
 
 }  // namespace
 
-std::span<const std::array<int, 3>> topology(BoundKind kind) {
-  static const std::array<std::vector<std::array<int, 3>>, 3> kTriangles{
-      make_topology(BoundKind::Box8), make_topology(BoundKind::Dop14), make_topology(BoundKind::Dop26)};
-  return kTriangles[static_cast<int>(kind)];
-}
+std::span<const std::array<int, 3>> topology(BoundKind kind) { return topology_of(kind).triangles; }
+
+std::span<const int> face_ends(BoundKind kind) { return topology_of(kind).face_ends; }
 
 Polyhedron bounding_polyhedron(std::span<const dvec3> points, BoundKind kind) {
   if (points.empty() || !std::all_of(points.begin(), points.end(), is_finite)) return {};
@@ -283,8 +310,7 @@ Polyhedron bounding_polyhedron(std::span<const dvec3> points, BoundKind kind) {
   if (!is_finite(3.0 * box.size())) return {};  // the cuts would overflow
   Polyhedron result;
   result.points = vertices(box, cuts_for(points, box, kind), kind);
-  const auto triangles = topology(kind);
-  result.triangles.assign(triangles.begin(), triangles.end());
+  append_topology(kind, 0, result);
   return result;
 }
 
@@ -307,8 +333,7 @@ LayerBound bound_of_each_part(const Scene& scene, const Layer& layer, BoundKind 
   for (const int part : layer.parts) {
     if (scene.meshes[scene.parts[part].mesh].positions.empty()) continue;
     const int first = static_cast<int>(bound.bodies.size()) * points_per_hull(kind);
-    for (const auto& [a, b, c] : topology(kind))
-      bound.hull.triangles.push_back({a + first, b + first, c + first});
+    append_topology(kind, first, bound.hull);
     bound.bodies.push_back(make_layer_bound(scene, alone(scene, part), kind));
   }
   return bound;
@@ -329,7 +354,7 @@ LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind ki
   } else {
     bound.axes_node = common_node(scene, layer);
   }
-  bound.hull.triangles.assign(topology(kind).begin(), topology(kind).end());
+  if (bound.hull.triangles.empty()) append_topology(kind, 0, bound.hull);
   return bound;
 }
 
@@ -363,6 +388,57 @@ std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, con
   const dmat4 world_from_axes = axes_of(frame, bound.axes_node);
   const auto in_axes = moved(inverse(world_from_axes), std::move(positions));
   return moved(world_from_axes, bounding_polyhedron(in_axes, bound.kind).points);
+}
+
+std::vector<dmat4> world_from_bodies(const SceneFrame& frame, const LayerBound& bound) {
+  const auto frame_of = [&frame](const LayerBound& body) {
+    return axes_of(frame, body.node >= 0 ? body.node : body.axes_node);
+  };
+  std::vector<dmat4> frames;
+  if (bound.bodies.empty()) frames.push_back(frame_of(bound));
+  for (const LayerBound& body : bound.bodies) frames.push_back(frame_of(body));
+  return frames;
+}
+
+std::vector<dvec3> face_areas(std::span<const dvec3> points, const Polyhedron& hull,
+                              std::span<const dmat4> world_from_body) {
+  TALISMAN_CHECK(!world_from_body.empty());
+  const std::size_t faces_per_body = hull.face_ends.size() / world_from_body.size();
+  std::vector<dvec3> areas;
+  areas.reserve(hull.face_ends.size());
+  int triangle = 0;
+  for (std::size_t body = 0; body < world_from_body.size(); ++body) {
+    const double sign = glm::determinant(glm::dmat3(world_from_body[body])) < 0 ? -1 : 1;
+    for (std::size_t face = 0; face < faces_per_body; ++face) {
+      dvec3 area(0.0);
+      for (const int end = hull.face_ends[areas.size()]; triangle < end; ++triangle) {
+        const auto& [a, b, c] = hull.triangles[triangle];
+        area += cross(points[b] - points[a], points[c] - points[a]);
+      }
+      areas.push_back(sign * area);
+    }
+  }
+  return areas;
+}
+
+std::vector<dvec3> point_normals(std::span<const dvec3> points, const Polyhedron& hull,
+                                 std::span<const dmat4> world_from_body) {
+  std::vector<dvec3> normals(points.size(), dvec3(0.0));
+  const std::vector<dvec3> areas = face_areas(points, hull, world_from_body);
+  int triangle = 0;
+  for (std::size_t face = 0; face < areas.size(); ++face) {
+    // A fan of n triangles has n + 2 corners: all of the first triangle, then one more of each.
+    normals[hull.triangles[triangle][0]] += areas[face];
+    normals[hull.triangles[triangle][1]] += areas[face];
+    for (; triangle < hull.face_ends[face]; ++triangle) normals[hull.triangles[triangle][2]] += areas[face];
+  }
+  dvec3 middle(0.0);
+  for (const dvec3& p : points) middle += p / static_cast<double>(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    normals[i] = unit_or_zero(normals[i]);
+    if (normals[i] == dvec3(0.0)) normals[i] = unit_or_zero(points[i] - middle);
+  }
+  return normals;
 }
 
 }  // namespace talisman::layers

@@ -23,10 +23,13 @@
 ///   e(s,b) + e(s,c) ≤ k(s)                       for every two edges at a corner.
 
 #include <array>
+#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "layers/layer.h"
+#include "layers/point_shading.h"
 
 namespace talisman::layers {
 
@@ -41,6 +44,8 @@ struct Polyhedron {
   std::vector<dvec3> points;
   /// Fan triangulation of the faces, counter-clockwise from outside.
   std::vector<std::array<int, 3>> triangles;
+  /// Face k is the fan of the triangles from face_ends[k - 1] (0 for the first) up to face_ends[k].
+  std::vector<int> face_ends{};
 };
 
 /// The bounding polyhedron of a point set: contains every point (to rounding, 1e-9 of the extent). An empty
@@ -49,6 +54,21 @@ Polyhedron bounding_polyhedron(std::span<const dvec3> points, BoundKind kind);
 
 /// The triangles that all polyhedra of a kind share.
 std::span<const std::array<int, 3>> topology(BoundKind kind);
+/// Likewise the ends of their faces.
+std::span<const int> face_ends(BoundKind kind);
+
+/// Twice the area of each face times its outer normal, in the world. The faces are those of as many bodies as
+/// there are matrices, in this order; a body whose matrix mirrors has its triangles clockwise in the world.
+/// Cost: O(triangles).
+std::vector<dvec3> face_areas(std::span<const dvec3> world_points, const Polyhedron& hull,
+                              std::span<const dmat4> world_from_body);
+
+/// A normal for each characteristic point: the sum of the areas of the faces that meet in it, of unit length.
+/// The normals of a box thus point into all eight octants, and those of a flat one to its two sides. Where
+/// the faces have no area they point away from the middle of all points; zero where that is nowhere. Cost:
+/// O(triangles).
+std::vector<dvec3> point_normals(std::span<const dvec3> world_points, const Polyhedron& hull,
+                                 std::span<const dmat4> world_from_body);
 
 /// The characteristic polyhedron of one layer.
 struct LayerBound {
@@ -62,6 +82,12 @@ struct LayerBound {
   /// aggregate (layers/aggregate.h); they may have bodies themselves. Then `hull` has the triangles of all of
   /// them, one after the other, and the points are theirs in the same order.
   std::vector<LayerBound> bodies;
+
+  /// Set where the layer's photometry is to be followed: then the characteristic points carry normals and
+  /// colours (layers/state.h). The author of the bound decides; see layers/light_change.h.
+  std::optional<MeanSurface> surface;
+  std::string_view surface_why_not = "not asked for";  ///< why `surface` is not set
+  bool follows_faces = false;  ///< the frames of the bodies are captured, to tell how its faces turn
 
   bool fixed() const { return node >= 0 || at_rest; }
 };
@@ -78,5 +104,9 @@ int point_count(const LayerBound& bound);
 /// World positions of the characteristic points at `frame`; none if the layer has no vertices or they are not
 /// finite. Cost: O(points) if fixed, else O(vertices of the layer).
 std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, const LayerBound& bound);
+
+/// The space that each body of the bound turns with: its node, or the node whose axes it follows; the world's
+/// (identity) where it has none. One for a bound without bodies. Cost: O(bodies).
+std::vector<dmat4> world_from_bodies(const SceneFrame& frame, const LayerBound& bound);
 
 }  // namespace talisman::layers

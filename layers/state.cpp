@@ -51,6 +51,18 @@ void capture_points(std::vector<dvec3> world_points, LayerState& state) {
   state.clip_points.clear();
 }
 
+/// Normals and colours of the characteristic points, where the bound asks for them.
+void capture_shading(const SceneFrame& frame, const LayerBound& bound, LayerState& state) {
+  if (state.world_points.empty() || !(bound.surface || bound.follows_faces)) return;
+  state.world_from_body = world_from_bodies(frame, bound);
+  if (!bound.surface) return;
+  state.world_normals = point_normals(state.world_points, bound.hull, state.world_from_body);
+  state.point_colors.reserve(state.world_points.size());
+  for (std::size_t i = 0; i < state.world_points.size(); ++i)
+    state.point_colors.push_back(shaded_color(*bound.surface, state.lights,
+                                              {state.world_points[i], state.world_normals[i], state.eye()}));
+}
+
 /// Is the point of the view axis at the near distance inside the solid? (x, y, w) is an affine image of the
 /// world, so the solid is inside of its triangles there too, or outside of all of them where the image is
 /// mirrored.
@@ -132,6 +144,7 @@ LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound
   state.camera = frame.camera;
   capture_appearance(frame, layer, state);
   capture_points(layers::world_points(frame, layer, bound), state);
+  capture_shading(frame, bound, state);
   if (!state.clip_points.empty()) capture_bounds(bound.hull, state);
   state.touches_display = overlaps_display(state.screen_bounds_px, view.display_px);
   return state;

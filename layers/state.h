@@ -55,11 +55,17 @@ struct LayerState {
   std::vector<dvec4> clip_points;      ///< the same in clip space
   std::vector<dmat4> world_from_part;  ///< of each part's node, joint palettes of skinned parts appended
   std::vector<LightState> lights;      ///< empty where no part of the layer is lit
-  RectD screen_bounds_px;              ///< of the polyhedron clipped to the enlarged view; empty: out of view
-  bool touches_display = false;        ///< screen_bounds_px overlaps the display itself
-  bool clipped = false;                ///< part of the polyhedron is in the enlarged view, and part is not
+  /// Of each body of the bound (one without bodies): the space that it turns with. Empty unless the bound
+  /// asks for it (LayerBound::surface, follows_faces).
+  std::vector<dmat4> world_from_body;
+  std::vector<dvec3> world_normals;  ///< of the characteristic points; empty without LayerBound::surface
+  std::vector<dvec3> point_colors;   ///< likewise: the shaded characteristic points, linear light 0 … 1
+  RectD screen_bounds_px;            ///< of the polyhedron clipped to the enlarged view; empty: out of view
+  bool touches_display = false;      ///< screen_bounds_px overlaps the display itself
+  bool clipped = false;              ///< part of the polyhedron is in the enlarged view, and part is not
   double nearest_w_m = 0;  ///< smallest w (depth along the view axis) of the clipped solid; 0: out of view
 
+  dvec3 eye() const { return dvec3(camera.world_from_camera[3]); }
   bool in_view() const { return !screen_bounds_px.empty(); }
   /// True if the two states would be rendered to the same pixels: same layer, camera, view, part matrices and
   /// lights, compared exactly. The time is not compared. NaN is never the same.
@@ -68,7 +74,7 @@ struct LayerState {
 
 /// The state of `layer` at `frame`. A camera or geometry that is not finite, near ≤ 0, or a display without
 /// area gives a state out of view. Cost: O(characteristic points) for a fixed bound inside the view; clipping
-/// adds O(triangles · 5).
+/// adds O(triangles · 5); a bound with a surface O(triangles + points · lights).
 LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound& bound, const View& view);
 
 /// Matched screen points of the same material points, in pixels. Only finite points with w > near in both

@@ -115,8 +115,12 @@ double benefit_px(const LayerAssessment& layer) {
   const layers::FiducialWeights& w = layer.preferences.importance;
   // A weight of zero silences its fiducial even where that is unbounded.
   const auto weighted = [](double weight, double px) { return weight > 0 ? weight * px : 0; };
-  const double benefit = weighted(w.geometric, f.geometric.px) + weighted(w.sampling, smear_px(f.sampling)) +
-                         weighted(w.visibility, f.visibility.computed ? f.visibility.uncovered_px : 0);
+  // What is not computed cannot matter.
+  const double light_px = f.photometric.computed ? kPxPerLight * f.photometric.color : 0;
+  const double hidden_px =
+      (f.visibility.computed ? f.visibility.uncovered_px : 0) + (f.turned.computed ? f.turned.px : 0);
+  const double benefit = weighted(w.geometric, f.geometric.px) + weighted(w.photometric, light_px) +
+                         weighted(w.sampling, smear_px(f.sampling)) + weighted(w.visibility, hidden_px);
   return benefit < kMostBenefitPx ? benefit : kMostBenefitPx;  // NaN too
 }
 

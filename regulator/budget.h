@@ -5,11 +5,13 @@
 /// [LS97 6], and how far the paper's greedy order is from the best choice.
 ///
 ///   1 warps        given: LayerAssessment::fitted
-///   2 benefit      B = w_g F + w_s S + w_v V, pixels                                (`benefit_px`)
+///   2 benefit      B = w_g F + w_p P + w_s S + w_v V, pixels                                (`benefit_px`)
 ///                    F  geometric fiducial, px
+///                    P  photometric fiducial · kPxPerLight, px
 ///                    S  (max(σ₁, 1) - 1) + (1 / min(σ₂, 1) - 1) + (anisotropy - 1): display pixels over
 ///                       which a texel is smeared, or texels skipped by a pixel; 0 at rest
-///                    V  depth to which a cut side has come into view, px
+///                    V  depth to which a cut side has come into view + size of a side that has turned to
+///                       the eye, px
 ///                    w  the layer's importance [LS97 2.4], no unit
 ///                  0 where the state is identical; kMostBenefitPx where the old sprite cannot be warped
 ///                  soundly or the author's minimum update rate makes a render due
@@ -57,6 +59,11 @@ struct Choice {
 
 /// The most that a layer can gain: more than any display is wide, small enough that sums keep the rest.
 inline constexpr double kMostBenefitPx = 1e6;
+
+/// The exchange rate of light for geometry: an error of the default photometric threshold, 0.05 of white,
+/// weighs as much as one of the default geometric threshold, 4 px. Weights (FiducialWeights) change it for a
+/// layer.
+inline constexpr double kPxPerLight = 80;
 
 /// B, 0 … kMostBenefitPx; what is not a number counts as the most.
 double benefit_px(const LayerAssessment& layer);

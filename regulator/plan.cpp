@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "layers/check.h"
 #include "regulator/budget.h"
@@ -69,7 +70,15 @@ LayerDecision rerender(const LayerAssessment& layer, std::string reason) {
 
 LayerDecision reuse(const LayerAssessment& layer, std::string reason) {
   const double error = layer.fiducials.geometric.px;
-  return {layer.layer, Action::Reuse, std::move(reason), layer.fitted.warp, error, error, {}, -1};
+  return {layer.layer,
+          Action::Reuse,
+          std::move(reason),
+          layer.fitted.warp,
+          error,
+          error,
+          {},
+          -1,
+          layer.fiducials.photometric.multiplier};
 }
 
 LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason) {
@@ -141,12 +150,33 @@ std::string first_defect(const RegulatorOptions& o) {
   if (!(o.anisotropy == 0 || o.anisotropy >= 1))
     return broken("anisotropy", o.anisotropy, "0 (off) or at least 1");
   if (std::isnan(o.uncovered_px)) return broken("uncovered_px", o.uncovered_px, "a number (negative: off)");
+  if (!(o.turned_px >= 0)) return broken("turned_px", o.turned_px, "at least 0 (0: off)");
+  if (!(o.photometric >= 0)) return broken("photometric", o.photometric, "at least 0 (0: off)");
+  if (!(o.light_angle_rad >= 0 && o.light_angle_rad <= std::numbers::pi))
+    return broken("light_angle_rad", o.light_angle_rad, "0 (off) to pi, which is 180 degrees");
   if (o.lookahead_frames < 0) return broken("lookahead_frames", o.lookahead_frames, "at least 0");
   if (o.budget_polygons < 0)
     return broken("budget_polygons", static_cast<double>(o.budget_polygons), "at least 0");
   if (o.budget_pixels < 0) return broken("budget_pixels", static_cast<double>(o.budget_pixels), "at least 0");
   if (!(o.cutoff_px >= 0)) return broken("cutoff_px", o.cutoff_px, "at least 0");
   return {};
+}
+
+bool follows_light(const RegulatorOptions& options) {
+  if (!options.color_warp && options.photometric == 0 && options.light_angle_rad == 0) return false;
+  switch (options.policy) {
+    case Policy::Direct:
+    case Policy::Reference:
+    case Policy::Hold:
+      return false;
+    case Policy::Interpolate:
+    case Policy::Threshold:
+    case Policy::Budget:
+    case Policy::Lookahead:
+    case Policy::Oracle:
+      return true;
+  }
+  return false;
 }
 
 double expected_reuse_frames(const RegulatorOptions& options, double threshold_default) {

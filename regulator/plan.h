@@ -75,8 +75,17 @@ struct RegulatorOptions {
   double minification = 0.5;   ///< 0 … 1: texels squeezed by more; 0: not regulated
   double anisotropy = 2;       ///< ≥ 1; 0: not regulated
   double uncovered_px = 1;     ///< ≥ 0: a cut side may be this far in view; negative: not regulated
-  int lookahead_frames = 16;   ///< Lookahead: N ≥ 0; a sprite may be drawn as of an instant up to N frames
-                               ///< ahead; 0 is Threshold; planning time grows with N, renders fall
+  double turned_px = 0;        ///< > 0: a side of the layer that has turned to the eye may be this large
+                               ///< (square root of its area); 0: not regulated, and not computed
+  double photometric = 0.05;   ///< > 0: shading may be this far off, linear light (1 is white), after the
+                               ///< colour warp; fewer renders as it grows; 0: not regulated
+  double light_angle_rad = 0;  ///< 0 … π: a light (or, for highlights, the eye) may have moved by this angle
+                               ///< about the layer: the alternative for hardware without colour warp; 0:
+                               ///< not regulated
+  bool color_warp = true;     ///< reused sprites are multiplied with the colour that fits their shading
+                              ///< best; false: hardware without it, the photometric error is that of 1
+  int lookahead_frames = 16;  ///< Lookahead: N ≥ 0; a sprite may be drawn as of an instant up to N frames
+                              ///< ahead; 0 is Threshold; planning time grows with N, renders fall
   std::int64_t budget_polygons = kNoLimit;  ///< Budget: triangles per frame, ≥ 0; more is drawn as it grows
   std::int64_t budget_pixels = kNoLimit;    ///< Budget: sprite texels per frame, ≥ 0; likewise
   double cutoff_px = 0.004;  ///< Budget: ≥ 0; a layer whose benefit (regulator/budget.h) is not above it is
@@ -97,6 +106,7 @@ struct LayerDecision {
   LayerCost cost;                 ///< spent: zero unless rendered
   int depicts_frame = -1;  ///< the frame at whose instant the sprite was drawn; ahead of the frame it is
                            ///< shown in only with Lookahead and Oracle; -1 if nothing is shown or not known
+  layers::dvec3 shown_color{1, 1, 1};  ///< multiplier of the sprite's colour, 0 … 1; 1 for a fresh sprite
 };
 
 struct FramePlan {
@@ -105,6 +115,9 @@ struct FramePlan {
 };
 
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options);
+
+/// Does the policy carry old sprites by warps at all, so that the light on them has to be followed?
+bool follows_light(const RegulatorOptions& options);
 
 /// First broken rule ("hold_frames is 0, must be at least 1"), or empty.
 std::string first_defect(const RegulatorOptions& options);

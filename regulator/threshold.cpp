@@ -5,6 +5,23 @@ namespace talisman::regulator {
 
 namespace {
 
+std::string name_of(const fiducials::LightRef& light) {
+  if (light.index == fiducials::LightRef::kEye) return " (highlights: the eye)";
+  if (light.index < 0) return {};
+  return light.name.empty() ? " (light " + std::to_string(light.index) + ")"
+                            : " (light '" + std::string(light.name) + "')";
+}
+
+std::string photometric_violation(const fiducials::Photometric& p, const RegulatorOptions& o) {
+  if (!p.computed) return {};
+  if (o.photometric > 0 && !(p.color <= o.photometric))
+    return comparison("photometric", p.color, ">", o.photometric) + name_of(p.color_light);
+  if (o.light_angle_rad > 0 && !(p.light_angle_rad <= o.light_angle_rad))
+    return comparison("photometric: light angle", p.light_angle_rad, ">", o.light_angle_rad, "rad") +
+           name_of(p.angle_light);
+  return {};
+}
+
 /// The first fiducial beyond its threshold, in words and numbers, or an empty string.
 /// The order is that of [LS97 5]: geometry first, because it is the one that users set.
 std::string first_violation(const LayerAssessment& layer, const RegulatorOptions& o) {
@@ -14,6 +31,7 @@ std::string first_violation(const LayerAssessment& layer, const RegulatorOptions
     return comparison("matched points", layer.matched_points, "<", kFewestMatchedPoints);
   if (!(f.geometric.px <= o.geometric_px))
     return comparison("geometric", f.geometric.px, ">", o.geometric_px, "px");
+  if (std::string light = photometric_violation(f.photometric, o); !light.empty()) return light;
   if (o.magnification > 0 && !(f.sampling.magnification <= o.magnification))
     return comparison("sampling: magnification", f.sampling.magnification, ">", o.magnification);
   if (o.minification > 0 && !(f.sampling.minification >= o.minification))
@@ -22,6 +40,8 @@ std::string first_violation(const LayerAssessment& layer, const RegulatorOptions
     return comparison("sampling: anisotropy", f.sampling.anisotropy, ">", o.anisotropy);
   if (o.uncovered_px >= 0 && f.visibility.computed && !(f.visibility.uncovered_px <= o.uncovered_px))
     return comparison("visibility: uncovered edge", f.visibility.uncovered_px, ">", o.uncovered_px, "px");
+  if (o.turned_px > 0 && f.turned.computed && !(f.turned.px <= o.turned_px))
+    return comparison("visibility: side turned to the eye", f.turned.px, ">", o.turned_px, "px");
   return {};
 }
 

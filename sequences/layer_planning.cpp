@@ -5,6 +5,7 @@
 
 #include "fiducials/fiducials.h"
 #include "sequences/motion_blur.h"
+#include "sequences/light_planning.h"
 #include "warp/shade.h"
 
 namespace talisman::sequences {
@@ -123,6 +124,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
     assessment.fitted = warp::fit(then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
   assessment.fiducials = fiducials::assess(then, now, placement, matched, assessment.fitted);
   if (assessment.preferences.motion_blur > 0) judge_motion_blur(pipeline, then, now, assessment);
+  assess_light_and_faces(pipeline, then, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));

@@ -36,6 +36,13 @@ void add_run_options(CLI::App& command, CommandLine& line) {
                      "direct, reference, hold, interpolate, threshold, budget, lookahead or oracle");
   command.add_option("--geometric-px", line.geometric_px,
                      "threshold of the geometric fiducial, pixels; 0: reuse only what is identical");
+  command.add_option("--photometric", line.photometric,
+                     "threshold of the photometric fiducial, linear light, 1 is white; 0: not regulated");
+  command.add_option("--light-angle-deg", line.light_angle_deg,
+                     "threshold of the angle by which a light moves about a layer; 0: not regulated");
+  command.add_option("--turned-px", line.turned_px,
+                     "threshold of the size of a side that has turned to the eye, pixels; 0: not regulated");
+  command.add_option("--color-warp", line.color_warp, "on, or off: as hardware without colour multipliers");
   command.add_option("--hold", line.hold, "N of the policies hold and interpolate");
   command.add_option("--lookahead", line.lookahead,
                      "N of the policy lookahead: frames ahead as of which a sprite may be drawn");

@@ -5,6 +5,8 @@
 #include <charconv>
 #include <utility>
 
+#include <glm/trigonometric.hpp>
+
 namespace talisman::sequences {
 
 namespace {
@@ -71,6 +73,12 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
     options.policy = *policy;
   }
   if (line.geometric_px) options.geometric_px = *line.geometric_px;
+  if (line.photometric) options.photometric = *line.photometric;
+  if (line.light_angle_deg) options.light_angle_rad = glm::radians(*line.light_angle_deg);
+  if (line.turned_px) options.turned_px = *line.turned_px;
+  if (!line.color_warp.empty())
+    options.color_warp =
+        choice("--color-warp", line.color_warp, std::array{std::pair{"on", true}, std::pair{"off", false}});
   if (line.hold) options.hold_frames = *line.hold;
   if (line.lookahead) options.lookahead_frames = *line.lookahead;
   if (line.budget_polygons) options.budget_polygons = *line.budget_polygons;

@@ -20,6 +20,8 @@ struct CommandLine {
   std::string size;    ///< "WxH"
   std::string policy, warp, bound, cycles, shading, format = "png", progress = "auto";
   std::optional<double> geometric_px, cutoff_px, expected_reuse, resolution;
+  std::optional<double> photometric, light_angle_deg, turned_px;
+  std::string color_warp;  ///< "on", "off"
   std::optional<int> hold, lookahead;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says
   std::optional<std::int64_t> budget_polygons, budget_pixels;

@@ -50,6 +50,24 @@ Json json_of(const regulator::LayerCost& cost) {
       {"polygons", cost.polygons}, {"pixels", cost.pixels}, {"chunks", cost.chunks}, {"bytes", cost.bytes}};
 }
 
+Json json_of(const layers::dvec3& v) { return {v.x, v.y, v.z}; }
+
+Json json_of(const fiducials::LightRef& light) {
+  if (light.index == fiducials::LightRef::kEye) return "eye (highlights)";
+  return light.index >= 0 ? Json(light.name) : Json(nullptr);
+}
+
+Json json_of(const fiducials::Photometric& p) {
+  if (!p.computed) return {{"why_not", p.why_not}};
+  return {{"color", p.color},
+          {"multiplier", json_of(p.multiplier)},
+          {"worst_at_px", {p.where_px.x, p.where_px.y}},
+          {"light", json_of(p.color_light)},
+          {"light_angle_rad", p.light_angle_rad},
+          {"angle_light", json_of(p.angle_light)},
+          {"light_distance", p.light_distance}};
+}
+
 Json json_of(const regulator::LayerAssessment& a) {
   const fiducials::Report& f = a.fiducials;
   return {{"warp_geometric_px", f.geometric.px},
@@ -60,6 +78,9 @@ Json json_of(const regulator::LayerAssessment& a) {
           {"anisotropy", f.sampling.anisotropy},
           {"uncovered_px", f.visibility.computed ? Json(f.visibility.uncovered_px) : Json(nullptr)},
           {"uncovered_why_not", f.visibility.why_not},
+          {"photometric", json_of(f.photometric)},
+          {"turned_px", f.turned.computed ? Json(f.turned.px) : Json(nullptr)},
+          {"turned_faces", f.turned.count},
           {"matched_points", a.matched_points},
           {"fit", warp::name(a.fitted.status)},
           {"frames_since_render", a.frames_since_render}};
@@ -233,6 +254,7 @@ std::string json_of(const Pipeline& pipeline, const FrameReport& report, const r
       {"reason", d.reason},
       {"warp", json_of(d.shown_warp)},
       {"geometric_px", d.shown_geometric_px},
+      {"color", json_of(d.shown_color)},
       {"depicts_frame", d.depicts_frame >= 0 ? Json(d.depicts_frame) : Json(nullptr)},
       {"fiducials", report.assessments[d.layer].has_sprite && report.assessments[d.layer].in_view
                         ? json_of(report.assessments[d.layer])

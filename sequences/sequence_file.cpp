@@ -4,6 +4,8 @@
 #include <filesystem>
 #include <limits>
 
+#include <glm/trigonometric.hpp>
+
 #include "sequences/asset_paths.h"
 #include "warp/warp.h"
 
@@ -83,6 +85,11 @@ regulator::RegulatorOptions read_regulator(YamlMap map) {
   read_threshold(map, "minification", options.minification, {0, 1});
   read_threshold(map, "anisotropy", options.anisotropy, {1, 1e6});
   map.read("uncovered_px", options.uncovered_px, kAnyNumber);
+  map.read("turned_px", options.turned_px, kNotNegative);
+  map.read("photometric", options.photometric, kNotNegative);
+  if (const YamlValue* angle = map.find("light_angle_deg"))
+    options.light_angle_rad = glm::radians(angle->number({0, 180}));
+  map.read("color_warp", options.color_warp);
   map.finish();
   return options;
 }

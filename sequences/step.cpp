@@ -8,6 +8,7 @@
 #include "layers/effects.h"
 #include "sequences/draw_instant.h"
 #include "sequences/layer_planning.h"
+#include "sequences/light_planning.h"
 
 namespace talisman::sequences {
 
@@ -67,6 +68,7 @@ int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
                     states_at(pipeline, state, frame)[decision.layer], 0);
   decision.shown_warp = shown.fitted.warp;
   decision.shown_geometric_px = shown.fiducials.geometric.px;
+  decision.shown_color = shown.fiducials.photometric.multiplier;
   return run.instant;
 }
 
@@ -94,7 +96,8 @@ std::vector<ShownSprite> sprites_shown(const PipelineState& state, const FrameRe
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
-                     memory.placement.size_px, report.frame - memory.frame_rendered});
+                     memory.placement.size_px, report.frame - memory.frame_rendered,
+                     layers::vec3(decision.shown_color)});
   }
   return shown;
 }
@@ -137,6 +140,7 @@ chunker::CompositeResult composite_shown(const Pipeline& pipeline, const std::ve
     chunker::PlacedSprite p;
     p.sprite = sprites.find(sprite.layer);
     p.screen_from_sprite = sprite.screen_from_sprite;
+    p.color_multiplier = sprite.color_multiplier;
     placed.push_back(p);
   }
   return chunker::composite(placed, pipeline.settings.view.display_px, pipeline.scene.background);
@@ -197,6 +201,7 @@ Pipeline::Pipeline(const layers::Scene& scene_in, const layers::LayerSet& layers
   for (const Layer& layer : layers.layers)
     bounds.push_back(layers::make_layer_bound(scene, layer, settings.bound));
   sorts_visibility = layers::calls_for_visibility_sort(layers.layers);
+  follow_light_and_faces(scene, layers, settings.regulator, bounds);
 }
 
 Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in,
@@ -205,7 +210,9 @@ Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in,
       layers(layers_in),
       settings(authored.settings),
       bounds(std::move(bounds_in)),
-      sorts_visibility(authored.sorts_visibility) {}
+      sorts_visibility(authored.sorts_visibility) {
+  follow_light_and_faces(scene, layers, settings.regulator, bounds, authored.bounds.size());
+}
 
 FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared) {

@@ -96,6 +96,7 @@ struct ShownSprite {
   layers::dmat3 screen_from_sprite{1.0};
   layers::ivec2 size_px{0, 0};
   int age_frames = 0;
+  layers::vec3 color_multiplier{1, 1, 1};
 };
 
 struct FrameReport {

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/light_change.h"
+
+#include <algorithm>
+
+namespace talisman::layers {
+namespace {
+
+int carrier_of(std::span<const int> carriers, int node) { return node >= 0 ? carriers[node] : -1; }
+
+/// A skinned part follows its joints, and deforms.
+bool move_against_each_other(const Part& part, int other_node, std::span<const int> carriers) {
+  return part.skin >= 0 || carrier_of(carriers, part.node) != carrier_of(carriers, other_node);
+}
+
+bool is_black(const vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+
+int camera_node(const Scene& scene) {
+  const int camera = scene.active_camera;
+  return camera >= 0 && camera < static_cast<int>(scene.cameras.size()) ? scene.cameras[camera].node : -1;
+}
+
+}  // namespace
+
+LightChange light_change_of(const Scene& scene, const Layer& layer, std::span<const int> carriers) {
+  static const Material plain;
+  bool lit = false;
+  const bool has_source = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                      [](const Light& light) { return light.kind != Light::Kind::Ambient; });
+  for (const int index : layer.parts) {
+    const Part& part = scene.parts[index];
+    const Material& material = part.material >= 0 ? scene.materials[part.material] : plain;
+    if (material.unlit) continue;
+    lit = true;
+    for (const Light& light : scene.lights)
+      if (light.kind != Light::Kind::Ambient && move_against_each_other(part, light.node, carriers))
+        return {"part '" + part.name + "' and light '" + light.name + "' move against each other", ""};
+    if (has_source && !is_black(material.specular) &&
+        move_against_each_other(part, camera_node(scene), carriers))
+      return {"part '" + part.name + "' is specular and moves against the eye", ""};
+  }
+  if (!lit) return {"", "no part of the layer is lit"};
+  if (scene.lights.empty()) return {"", "the scene has no light"};
+  if (!has_source) return {"", "the only light is ambient"};
+  return {"", "no light moves against the layer, and no highlight moves on it"};
+}
+
+}  // namespace talisman::layers

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/light_change.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "layers/animation.h"
+#include "layers/effects.h"
+#include "tests/support/scenes.h"
+
+namespace talisman::layers {
+namespace {
+
+using ::testing::HasSubstr;
+
+/// A cube under an ambient light and a sun; nothing moves yet.
+struct Stage {
+  Scene scene = tests::cube_scene();
+  Stage& spin(int node) {
+    scene.tracks.push_back({node, SpinTrack{{0, 1, 0}, 1}});
+    return *this;
+  }
+  int add_node(int parent = -1) {
+    scene.nodes.emplace_back();
+    scene.nodes.back().parent = parent;
+    return static_cast<int>(scene.nodes.size()) - 1;
+  }
+  Material& material() { return scene.materials[scene.parts[0].material]; }
+  int cube() const { return scene.parts[0].node; }
+  Light& sun() {
+    for (Light& light : scene.lights)
+      if (light.kind == Light::Kind::Directional) return light;
+    return scene.lights.front();
+  }
+  LightChange change() const {
+    return light_change_of(scene, factor(scene, tests::one_layer_per_part(scene)).layers[0],
+                           moving_carriers(scene));
+  }
+};
+
+TEST(LightChange, NothingChangesAtRest) {
+  const LightChange change = Stage().change();
+  EXPECT_FALSE(change.possible());
+  EXPECT_THAT(std::string(change.why_not), HasSubstr("no light moves"));
+  EXPECT_EQ(change.why, "");
+}
+
+TEST(LightChange, LayerThatTurnsUnderAFixedSunChanges) {
+  Stage stage;
+  const LightChange change = stage.spin(stage.cube()).change();
+  EXPECT_TRUE(change.possible());
+  EXPECT_THAT(change.why, HasSubstr("part 'cube' and light"));
+}
+
+TEST(LightChange, LightThatMovesChangesALayerAtRest) {
+  Stage stage;
+  stage.sun().node = stage.add_node();
+  EXPECT_FALSE(stage.change().possible());
+  EXPECT_TRUE(stage.spin(stage.sun().node).change().possible());
+}
+
+// A lamp mounted on what it lights moves with it.
+TEST(LightChange, LightCarriedByTheLayerDoesNotChange) {
+  Stage stage;
+  stage.sun().node = stage.add_node(stage.cube());
+  EXPECT_FALSE(stage.spin(stage.cube()).change().possible());
+}
+
+TEST(LightChange, UnlitLayersAndAmbientLightNeverChange) {
+  Stage unlit;
+  unlit.spin(unlit.cube()).material().unlit = true;
+  EXPECT_EQ(unlit.change().why_not, "no part of the layer is lit");
+  Stage dark;
+  dark.spin(dark.cube()).scene.lights.clear();
+  EXPECT_EQ(dark.change().why_not, "the scene has no light");
+  Stage flat;
+  flat.spin(flat.cube()).sun().kind = Light::Kind::Ambient;
+  EXPECT_EQ(flat.change().why_not, "the only light is ambient");
+}
+
+TEST(LightChange, HighlightsChangeWithTheEye) {
+  Stage stage;
+  stage.scene.cameras[0].node = stage.add_node();
+  stage.spin(stage.scene.cameras[0].node);
+  EXPECT_FALSE(stage.change().possible());
+  stage.material().specular = {0.5f, 0.5f, 0.5f};
+  EXPECT_TRUE(stage.change().possible());
+  EXPECT_THAT(stage.change().why, HasSubstr("eye"));
+}
+
+TEST(LightChange, SkinnedLayersDeformUnderTheLight) {
+  const Scene scene = tests::skinned_bar_scene();
+  const auto layers = factor(scene, tests::one_layer_per_part(scene)).layers;
+  EXPECT_TRUE(light_change_of(scene, layers[0], moving_carriers(scene)).possible());
+}
+
+TEST(Effects, ColorWarpIsCalledForByTheLayersWhoseLightChanges) {
+  const Scene scene = tests::moving_scene();  // ground at rest; cube and moon turn under the sun
+  const auto layers = factor(scene, tests::one_layer_per_part(scene)).layers;
+  for (const EffectCall& call : effects_called_for(scene, layers)) {
+    if (call.effect != Effect::ColorWarp) continue;
+    EXPECT_TRUE(call.called);
+    EXPECT_EQ(call.layers, (std::vector<int>{1, 2}));
+  }
+  const Scene rest = tests::cube_scene();
+  const auto table = effects_called_for(rest, factor(rest, tests::one_layer_per_part(rest)).layers);
+  EXPECT_EQ(table.back().effect, Effect::ColorWarp);
+  EXPECT_FALSE(table.back().called);
+  EXPECT_NE(table.back().why, "");
+}
+
+}  // namespace
+}  // namespace talisman::layers
