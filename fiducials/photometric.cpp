@@ -183,6 +183,8 @@ void note_light(const BodyMotion& motion, const LightState& then, const LightSta
   if (now.kind == Light::Kind::Ambient) return;
   if (now.kind == Light::Kind::Directional)
     return note_angle(angle_between_rad(motion.carried(then.direction), now.direction), light, result);
+  if (now.kind == Light::Kind::Spot)
+    note_angle(angle_between_rad(motion.carried(then.direction), now.direction), light, result);
   note_position(motion, then.position, now.position, light, result);
 }
 
@@ -191,7 +193,8 @@ void follow_lights(const LayerState& then, const LayerState& now, const LayerBou
   for (std::size_t body = 0; body < now.world_from_body.size(); ++body) {
     const BodyMotion motion = motion_of(then, now, body);
     for (std::size_t l = 0; l < std::max(then.lights.size(), now.lights.size()); ++l) {
-      const LightState dark{Light::Kind::Ambient, {}, {}, {0, 0, 0}};
+      LightState dark;
+      dark.color = {0, 0, 0};
       note_light(motion, l < then.lights.size() ? then.lights[l] : dark,
                  l < now.lights.size() ? now.lights[l] : dark, static_cast<int>(l), result);
     }

@@ -63,6 +63,8 @@ LayerBound aggregate_bound(std::span<const LayerBound> bounds, std::span<const i
   int first = 0;
   for (const int member : members) {
     const LayerBound& body = bounds[member];
+    const int triangles = static_cast<int>(bound.hull.triangles.size());
+    for (const int end : body.hull.face_ends) bound.hull.face_ends.push_back(end + triangles);
     for (const auto& [a, b, c] : body.hull.triangles)
       bound.hull.triangles.push_back({a + first, b + first, c + first});
     first += point_count(body);

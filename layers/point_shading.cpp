@@ -119,6 +119,16 @@ void add_part(const Scene& scene, const Part& part, double weight, MeanSurface& 
   mean.shininess += (specular.x + specular.y + specular.z) * std::max(material.shininess, 0.0f);
 }
 
+/// 1 in the inner cone of a spot, 0 outside the outer one, smooth between; 1 for other lights.
+double falloff(const LightState& light, const dvec3& to_light) {
+  if (light.kind != Light::Kind::Spot) return 1;
+  constexpr double kSharpest = 1e-6;  // a cone without a soft edge still has a finite slope
+  const double outer = std::cos(light.outer_cone_rad), inner = std::cos(light.inner_cone_rad);
+  const double on_axis = -dot(unit_or_zero(light.direction), to_light);
+  const double t = std::clamp((on_axis - outer) / std::max(inner - outer, kSharpest), 0.0, 1.0);
+  return t * t * (3 - 2 * t);
+}
+
 }  // namespace
 
 MeanSurface mean_surface(const Scene& scene, const Layer& layer) {
@@ -132,13 +142,14 @@ MeanSurface mean_surface(const Scene& scene, const Layer& layer) {
 }
 
 dvec3 share_of_light(const MeanSurface& surface, const LightState& light, const SurfacePoint& point) {
-  const dvec3 color(light.color);
+  dvec3 color(light.color);
   if (!is_finite(light.position) || !is_finite(light.direction) || !is_finite(color)) return dvec3(0.0);
   if (light.kind == Light::Kind::Ambient) return surface.base * color;
   const dvec3 to_light = unit_or_zero(
       light.kind == Light::Kind::Directional ? -light.direction : light.position - point.position);
   const double facing = dot(point.normal, to_light);
   if (!(facing > 0)) return dvec3(0.0);
+  color *= falloff(light, to_light);
   const dvec3 diffuse = surface.base * color * facing;
   if (!surface.has_specular()) return diffuse;
   const dvec3 halfway = unit_or_zero(to_light + unit_or_zero(point.eye - point.position));
