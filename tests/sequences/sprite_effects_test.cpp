@@ -18,22 +18,22 @@ using regulator::Policy;
 constexpr int kFrames = 16;
 
 /// moving_scene: a ground at rest, a cube that spins, a moon that orbits, seen by a moving camera.
-struct Run {
+struct Film {
   layers::Scene scene = tests::moving_scene();
   layers::LayerSet layers = layers::factor(scene, tests::one_layer_per_part(scene));
   Settings settings;
 
-  explicit Run(Policy policy, double geometric_px = 4) {
+  explicit Film(Policy policy, double geometric_px = 4) {
     settings.regulator.policy = policy;
     settings.regulator.geometric_px = geometric_px;
     settings.view.display_px = {200, 150};
     settings.frames = kFrames;
   }
-  Run& blurred(double shutter) {
+  Film& blurred(double shutter) {
     for (layers::Layer& layer : layers.layers) layer.preferences.motion_blur = shutter;
     return *this;
   }
-  Run& compressed(int quality) {
+  Film& compressed(int quality) {
     settings.compression = chunker::CompressionOptions{quality};
     return *this;
   }
@@ -61,7 +61,7 @@ int largest_difference(const chunker::Frame& a, const chunker::Frame& b) {
 }
 
 TEST(SpriteCompressionInARun, NothingOfItExistsUnlessItIsAskedFor) {
-  const Run run(Policy::Threshold);
+  const Film run(Policy::Threshold);
   for (const FrameReport& report : run.reports()) EXPECT_FALSE(report.compression);
   const Pipeline pipeline(run.scene, run.layers, run.settings);
   const Summary summary = start_summary(pipeline, "test");
@@ -71,8 +71,8 @@ TEST(SpriteCompressionInARun, NothingOfItExistsUnlessItIsAskedFor) {
 }
 
 TEST(SpriteCompressionInARun, ShowsNearlyTheSameAndDecidesTheSame) {
-  const auto plain = Run(Policy::Threshold).reports(),
-             packed = Run(Policy::Threshold).compressed(95).reports();
+  const auto plain = Film(Policy::Threshold).reports(),
+             packed = Film(Policy::Threshold).compressed(95).reports();
   for (int f = 0; f < kFrames; ++f) {
     EXPECT_LE(largest_difference(plain[f].picture, packed[f].picture), 24) << f;
     ASSERT_EQ(plain[f].plan.decisions.size(), packed[f].plan.decisions.size());
@@ -84,7 +84,7 @@ TEST(SpriteCompressionInARun, ShowsNearlyTheSameAndDecidesTheSame) {
 
 TEST(SpriteCompressionInARun, CountersAddUp) {
   std::int64_t bytes = 0, sprites = 0;
-  for (const FrameReport& report : Run(Policy::Reference).compressed(80).reports()) {
+  for (const FrameReport& report : Film(Policy::Reference).compressed(80).reports()) {
     ASSERT_TRUE(report.compression);
     const CompressionReport& c = *report.compression;
     sprites += c.sprites;
@@ -101,12 +101,12 @@ TEST(SpriteCompressionInARun, CountersAddUp) {
 }
 
 TEST(MotionBlur, ThresholdZeroEqualsReferenceByteForByte) {
-  EXPECT_EQ(hashes(Run(Policy::Threshold, 0).blurred(0.8).reports()),
-            hashes(Run(Policy::Reference).blurred(0.8).reports()));
+  EXPECT_EQ(hashes(Film(Policy::Threshold, 0).blurred(0.8).reports()),
+            hashes(Film(Policy::Reference).blurred(0.8).reports()));
 }
 
 TEST(MotionBlur, FasterLayersAreSampledLessDenselyAndNeverBelowASixteenth) {
-  Run slow(Policy::Reference), fast(Policy::Reference);
+  Film slow(Policy::Reference), fast(Policy::Reference);
   slow.blurred(0.1);
   fast.blurred(1);
   fast.settings.fps = slow.settings.fps = 4;  // long frames: fast motion
@@ -133,7 +133,7 @@ TEST(MotionBlur, AtRestThereIsNone) {
 }
 
 TEST(MotionBlur, BlurThatIsNotThatOfNowCountsAsSampling) {
-  Run run(Policy::Threshold);
+  Film run(Policy::Threshold);
   run.blurred(1);
   run.settings.fps = 4;
   const Pipeline pipeline(run.scene, run.layers, run.settings);
