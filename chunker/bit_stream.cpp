@@ -105,7 +105,8 @@ void BitReader::get_sparse(std::span<int> values) {
 
 DecodeStatus BitReader::finish() {
   const std::size_t left = bytes_.size() * 8 - position_;
-  if (status_ == DecodeStatus::Ok && (left >= 8 || get(static_cast<int>(left)) != 0)) fail(DecodeStatus::Corrupt);
+  if (status_ == DecodeStatus::Ok && (left >= 8 || get(static_cast<int>(left)) != 0))
+    fail(DecodeStatus::Corrupt);
   return status_;
 }
 

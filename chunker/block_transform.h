@@ -5,8 +5,8 @@
 ///
 ///   F = T f Tᵀ,  f = Tᵀ F T,   T[k][n] = c_k cos((2n + 1) k π/16),  c_0 = √(1/8), c_k = 1/2
 ///
-/// with T in 12-bit fixed point, and F in quarters. There and back is off by at most one for |f| ≤ 255. Neither
-/// direction overflows for any input within its stated range.
+/// with T in 12-bit fixed point, and F in quarters. There and back is off by at most one for |f| ≤ 255.
+/// Neither direction overflows for any input within its stated range.
 
 #include <array>
 

@@ -75,7 +75,8 @@ CacheCounters& CacheCounters::operator+=(const CacheCounters& o) {
 }
 
 void ChunkCache::touch(int sprite, int chunk, std::int64_t bytes) {
-  const Key key = static_cast<Key>(static_cast<std::uint32_t>(sprite)) << 32 | static_cast<std::uint32_t>(chunk);
+  const Key key =
+      static_cast<Key>(static_cast<std::uint32_t>(sprite)) << 32 | static_cast<std::uint32_t>(chunk);
   if (const auto known = place_.find(key); known != place_.end()) {
     ++counters_.hits;
     used_.splice(used_.begin(), used_, known->second);

@@ -4,10 +4,10 @@
 /// How often does the compositor fetch and decompress a chunk? A model of its cache of decompressed chunks
 /// [A §1 row 7]: the N that were used last. Size and rule are unpublished; both are assumed.
 ///
-/// The compositor finishes 32 display lines at a time. For each band it goes through the sprites back to front,
-/// and along the band tile by tile (32×32 pixels); a tile asks for every chunk under the bounding box of its
-/// texels, as chunker/composite gathers them. A chunk that is in the cache is a hit; one that is not is
-/// fetched (its compressed bytes are read) and decompressed, and takes the place of the one that was used
+/// The compositor finishes 32 display lines at a time. For each band it goes through the sprites back to
+/// front, and along the band tile by tile (32×32 pixels); a tile asks for every chunk under the bounding box
+/// of its texels, as chunker/composite gathers them. A chunk that is in the cache is a hit; one that is not
+/// is fetched (its compressed bytes are read) and decompressed, and takes the place of the one that was used
 /// longest ago. Clear chunks are known from their reference and ask for nothing.
 
 #include <cstdint>
@@ -51,8 +51,8 @@ struct PlacedCompressed {
   layers::dmat3 screen_from_sprite{1.0};
 };
 
-/// The accesses of one frame, sprites back to front. A map that is singular or not finite asks for nothing, as
-/// does a tile that the horizon of a perspective map crosses. Cost: O(sprites · tiles + accesses).
+/// The accesses of one frame, sprites back to front. A map that is singular or not finite asks for nothing,
+/// as does a tile that the horizon of a perspective map crosses. Cost: O(sprites · tiles + accesses).
 void touch_chunks(std::span<const PlacedCompressed> sprites, layers::ivec2 display_px, ChunkCache& cache);
 
 }  // namespace talisman::chunker

@@ -124,7 +124,8 @@ void fill_unseen(const std::array<bool, kBlockTexels>& shown, int mean, Block& v
       if (shown[i]) continue;
       const int x = i % kBlockSide, y = i / kBlockSide;
       const int left = values[x > 0 ? i - 1 : i], right = values[x + 1 < kBlockSide ? i + 1 : i];
-      const int above = values[y > 0 ? i - kBlockSide : i], below = values[y + 1 < kBlockSide ? i + kBlockSide : i];
+      const int above = values[y > 0 ? i - kBlockSide : i],
+                below = values[y + 1 < kBlockSide ? i + kBlockSide : i];
       values[i] = (left + right + above + below + 2) >> 2;
     }
 }

@@ -72,7 +72,8 @@ CompressedSprite compress(const Sprite& sprite, const CompressionOptions& option
   const int columns = result.chunks_.x, count = columns * result.chunks_.y;
   std::vector<std::vector<std::uint8_t>> parts(count);
   tbb::parallel_for(0, count, [&](int i) {
-    if (const Chunk* chunk = sprite.chunk(i % columns, i / columns)) parts[i] = compress_chunk(*chunk, options);
+    if (const Chunk* chunk = sprite.chunk(i % columns, i / columns))
+      parts[i] = compress_chunk(*chunk, options);
   });
   result.offset_.push_back(0);
   for (const auto& part : parts) {
@@ -100,8 +101,7 @@ Sprite decompress(const CompressedSprite& sprite) {
     if (!sprite.chunk_bytes(i % columns, i / columns).empty()) places.push_back(i);
   std::vector<Chunk> chunks(places.size());
   tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
-    const DecodeStatus status =
-        decompress_chunk(sprite, places[i] % columns, places[i] / columns, chunks[i]);
+    const DecodeStatus status = decompress_chunk(sprite, places[i] % columns, places[i] / columns, chunks[i]);
     TALISMAN_CHECK(status == DecodeStatus::Ok);  // its bytes come from `compress`
   });
   return Sprite::assemble(sprite.size_px(), places, chunks);

@@ -5,25 +5,28 @@
 /// rows 6, 7]: every chunk is coded on its own and found by its offset, so that the compositor can fetch any
 /// one of them.
 ///
-/// Talisman's TREC is published as JPEG-like, about 10:1, per chunk and randomly accessible; its block layout,
-/// tables and bit stream are not. All of what follows is assumed. A chunk is a mode byte (0: as it is;
-/// else the quality, + 128 for colours that are not straight) and a bit stream of 16 blocks of 8×8 texels, each:
+/// Talisman's TREC is published as JPEG-like, about 10:1, per chunk and randomly accessible; its block
+/// layout, tables and bit stream are not. All of what follows is assumed. A chunk is a mode byte (0: as it
+/// is; else the quality, + 128 for colours that are not straight) and a bit stream of 16 blocks of 8×8
+/// texels, each:
 ///
 ///   alpha    lossless. Predicted from its left and upper neighbours (the median of a, b and a + b - c), the
-///            first of a block from the last of the block before; the differences modulo 256 are a sparse run.
+///            first of a block from the last of the block before; the differences modulo 256 are a sparse
+///            run.
 ///   colour   reversible YCoCg of the texel's bytes, an orthonormal 8×8 DCT in 12-bit fixed point, and
 ///
 ///              level = c / step,  step(u, v) = 2^((80 - quality)/10) · (1 + (u + v)/4) · (2 for Co and Cg)
 ///
 ///            rounded to nearest, for c other than the first (u = v = 0) a little towards 0. The first level
 ///            is the difference to that of the block before, the others are a sparse run in zig-zag order.
-///   sparse run  how many are not zero; for each how many zeros before it, its size less one, its sign. Numbers
+///   sparse run  how many are not zero; for each how many zeros before it, its size less one, its sign.
+///   Numbers
 ///            are Exp-Golomb codes of order 0.
 ///
-/// Colours are coded *straight*: divided by alpha (in the square-root scale of the texel) where there is some,
-/// what costs least where there is none. So an antialiased edge is no edge for the transform, a decoded texel
-/// is never brighter than its alpha, and a clear texel stays clear. A chunk with a texel brighter than its
-/// alpha (additive layers: alpha 0) is coded as it is, and may come back brighter or darker by the
+/// Colours are coded *straight*: divided by alpha (in the square-root scale of the texel) where there is
+/// some, what costs least where there is none. So an antialiased edge is no edge for the transform, a decoded
+/// texel is never brighter than its alpha, and a clear texel stays clear. A chunk with a texel brighter than
+/// its alpha (additive layers: alpha 0) is coded as it is, and may come back brighter or darker by the
 /// quantisation. A chunk that would not get smaller than it is (noise) is stored as it is, with the mode that
 /// says so. Clear chunks cost their reference only.
 ///
@@ -40,8 +43,8 @@
 namespace talisman::chunker {
 
 struct CompressionOptions {
-  /// 1 … 100; values outside count as the nearest end. Ten more halve the quantisation steps: more bytes, less
-  /// error. 100 is off by at most a code value or two; the default gives about 10:1 on typical sprites.
+  /// 1 … 100; values outside count as the nearest end. Ten more halve the quantisation steps: more bytes,
+  /// less error. 100 is off by at most a code value or two; the default gives about 10:1 on typical sprites.
   int quality = 85;
   bool operator==(const CompressionOptions&) const = default;
 };
@@ -86,9 +89,9 @@ CompressedSprite compress(const Sprite& sprite, const CompressionOptions& option
 DecodeStatus decompress_chunk(const CompressedSprite& sprite, int column, int row, Chunk& chunk);
 Sprite decompress(const CompressedSprite& sprite);
 
-/// What compression changed, in sums that can be added up over sprites. Colour is measured in the texel's bytes
-/// (square-root scale, where equal steps look about equal) and weighted by alpha; texels that add light (alpha
-/// 0, not black) count in full.
+/// What compression changed, in sums that can be added up over sprites. Colour is measured in the texel's
+/// bytes (square-root scale, where equal steps look about equal) and weighted by alpha; texels that add light
+/// (alpha 0, not black) count in full.
 struct CompressionError {
   std::int64_t color_squared = 0;  ///< Σ weight · (Δr² + Δg² + Δb²), weight 255 = one
   std::int64_t color_weight = 0;   ///< Σ weight · 3

@@ -68,12 +68,13 @@ Lattice choose_direction(const std::vector<dvec2>& shown, const PlacementOptions
   return best;
 }
 
-/// One axis along the motion, at most 45 degrees from the display's, so that the sprite stays upright; the same
-/// for motion there and back.
+/// One axis along the motion, at most 45 degrees from the display's, so that the sprite stays upright; the
+/// same for motion there and back.
 Lattice along_motion(dvec2 motion, double density, double ratio) {
   const dvec2 way = motion / std::hypot(motion.x, motion.y);
   const bool is_x = std::abs(way.x) >= std::abs(way.y);
-  const dvec2 x_axis = is_x ? way * (way.x < 0 ? -1.0 : 1.0) : dvec2(way.y, -way.x) * (way.y < 0 ? -1.0 : 1.0);
+  const dvec2 x_axis =
+      is_x ? way * (way.x < 0 ? -1.0 : 1.0) : dvec2(way.y, -way.x) * (way.y < 0 ? -1.0 : 1.0);
   return {x_axis.x, x_axis.y + 0, is_x ? dvec2(density * ratio, density) : dvec2(density, density * ratio)};
 }
 
@@ -88,8 +89,8 @@ Lattice choose_lattice(const std::vector<dvec2>& shown, const PlacementOptions& 
   return along_motion(options.motion, density, std::max(options.motion_density, kLeastMotionDensity));
 }
 
-/// The factor by which density must fall so that the larger side of `shown` takes at most `max_px` texels with
-/// its margins.
+/// The factor by which density must fall so that the larger side of `shown` takes at most `max_px` texels
+/// with its margins.
 double reduction_within(const RectD& shown, int max_px) {
   const double larger = std::max(shown.width(), shown.height());
   return larger + kMargins > max_px ? (max_px - kMargins) / larger : 1;

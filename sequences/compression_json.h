@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The entry "compression" of frames.jsonl and summary.json. Ratio, PSNR and hit rate are computed from the sums
-/// beside them; a PSNR without any error is null.
+/// The entry "compression" of frames.jsonl and summary.json. Ratio, PSNR and hit rate are computed from the
+/// sums beside them; a PSNR without any error is null.
 
 #include <nlohmann/json.hpp>
 

@@ -4,12 +4,12 @@
 /// Writing frames while the next ones are drawn.
 ///
 /// Encoding a picture takes about as long as drawing it, and one thread only. So frames go, in order, through
-/// a short queue to a thread of their own. What a job does for one frame is done whole before that of the next
-/// begins: first the picture gets its final name, then its line is written. So a run may be killed at any
-/// moment and still every line speaks of a picture that is there.
+/// a short queue to a thread of their own. What a job does for one frame is done whole before that of the
+/// next begins: first the picture gets its final name, then its line is written. So a run may be killed at
+/// any moment and still every line speaks of a picture that is there.
 ///
-/// A job that throws ends the writing: it and all jobs behind it are dropped, and the next call of `submit` or
-/// `finish` throws what it threw, in the caller's thread.
+/// A job that throws ends the writing: it and all jobs behind it are dropped, and the next call of `submit`
+/// or `finish` throws what it threw, in the caller's thread.
 
 #include <condition_variable>
 #include <cstddef>

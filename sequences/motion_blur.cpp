@@ -43,11 +43,11 @@ void apply_motion_blur(const Pipeline& pipeline, const layers::LayerState& now,
   placement.motion_density = sampling.density;
 }
 
-void judge_motion_blur(const Pipeline& pipeline, const layers::LayerState& then, const layers::LayerState& now,
-                       regulator::LayerAssessment& assessment) {
+void judge_motion_blur(const Pipeline& pipeline, const layers::LayerState& then,
+                       const layers::LayerState& now, regulator::LayerAssessment& assessment) {
   const MotionSampling before = motion_sampling(pipeline, then), wanted = motion_sampling(pipeline, now);
-  const bool same_blur = before.density == wanted.density &&
-                         (wanted.density == 1 || before.motion_px == wanted.motion_px);
+  const bool same_blur =
+      before.density == wanted.density && (wanted.density == 1 || before.motion_px == wanted.motion_px);
   assessment.identical = assessment.identical && same_blur;
   const double ratio = wanted.density / before.density;
   fiducials::Sampling& sampling = assessment.fiducials.sampling;

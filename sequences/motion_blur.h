@@ -27,9 +27,10 @@ MotionSampling motion_sampling(const Pipeline& pipeline, const layers::LayerStat
 void apply_motion_blur(const Pipeline& pipeline, const layers::LayerState& now,
                        layers::PlacementOptions& placement);
 
-/// A sprite of `then` has another blur than one of `now` would have. It is then not identical, and the ratio of
-/// the two densities counts as magnification (a blur that has ended) or minification (one that is missing).
-void judge_motion_blur(const Pipeline& pipeline, const layers::LayerState& then, const layers::LayerState& now,
-                       regulator::LayerAssessment& assessment);
+/// A sprite of `then` has another blur than one of `now` would have. It is then not identical, and the ratio
+/// of the two densities counts as magnification (a blur that has ended) or minification (one that is
+/// missing).
+void judge_motion_blur(const Pipeline& pipeline, const layers::LayerState& then,
+                       const layers::LayerState& now, regulator::LayerAssessment& assessment);
 
 }  // namespace talisman::sequences

@@ -7,7 +7,8 @@
 namespace talisman::sequences {
 
 double CompressionReport::ratio() const {
-  return compressed_bytes > 0 ? static_cast<double>(original_bytes) / static_cast<double>(compressed_bytes) : 1;
+  return compressed_bytes > 0 ? static_cast<double>(original_bytes) / static_cast<double>(compressed_bytes)
+                              : 1;
 }
 
 CompressionReport& CompressionReport::operator+=(const CompressionReport& o) {

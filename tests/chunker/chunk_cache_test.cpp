@@ -142,7 +142,8 @@ TEST(TouchChunks, TheSpriteBehindComesFirstInEachBand) {
   ChunkCache cache(1);
   const PlacedCompressed placed[] = {{&a, shifted(0, 0)}, {&b, shifted(0, 0)}};
   touch_chunks(placed, {32, 64}, cache);
-  // Band 0 touches chunks 0 and 1 of a, then of b; band 1 chunk 1 of a, then of b. Nothing is ever still there.
+  // Band 0 touches chunks 0 and 1 of a, then of b; band 1 chunk 1 of a, then of b. Nothing is ever still
+  // there.
   EXPECT_EQ(cache.counters().misses, 6);
   EXPECT_EQ(cache.counters().hits, 0);
 }

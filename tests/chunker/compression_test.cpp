@@ -18,13 +18,16 @@ constexpr int kTexels = kChunkSize * kChunkSize;
 
 std::uint8_t byte(double v) { return static_cast<std::uint8_t>(std::clamp(v, 0.0, 255.0) + 0.5); }
 
-/// A soft picture under an antialiased disc: what a typical sprite's chunk looks like. Colours are premultiplied.
+/// A soft picture under an antialiased disc: what a typical sprite's chunk looks like. Colours are
+/// premultiplied.
 Chunk disc_chunk(double radius = 12, double phase = 0) {
   Chunk chunk;
   for (int y = 0; y < kChunkSize; ++y)
     for (int x = 0; x < kChunkSize; ++x) {
       const double a = std::clamp(radius - std::hypot(x - 15.5, y - 15.5) + 0.5, 0.0, 1.0);
-      const auto shade = [&](double f) { return static_cast<float>(a * (0.5 + 0.4 * std::sin(f * x + 0.1 * y + phase))); };
+      const auto shade = [&](double f) {
+        return static_cast<float>(a * (0.5 + 0.4 * std::sin(f * x + 0.1 * y + phase)));
+      };
       chunk.texels[y * kChunkSize + x] = encode({shade(0.2), shade(0.15), shade(0.1), static_cast<float>(a)});
     }
   return chunk;
@@ -55,7 +58,8 @@ Chunk there_and_back(const Chunk& chunk, int quality) {
 int largest_difference(const Chunk& a, const Chunk& b) {
   int largest = 0;
   for (int i = 0; i < kTexels; ++i)
-    for (const int d : {a.texels[i].r - b.texels[i].r, a.texels[i].g - b.texels[i].g, a.texels[i].b - b.texels[i].b})
+    for (const int d :
+         {a.texels[i].r - b.texels[i].r, a.texels[i].g - b.texels[i].g, a.texels[i].b - b.texels[i].b})
       largest = std::max(largest, std::abs(d));
   return largest;
 }
@@ -87,7 +91,8 @@ TEST(BlockTransform, IsThatOfTheTextbookInFloatingPoint) {
       double sum = 0;
       for (int y = 0; y < kBlockSide; ++y)
         for (int x = 0; x < kBlockSide; ++x)
-          sum += f[y * kBlockSide + x] * std::cos((2 * x + 1) * u * M_PI / 16) * std::cos((2 * y + 1) * v * M_PI / 16);
+          sum += f[y * kBlockSide + x] * std::cos((2 * x + 1) * u * M_PI / 16) *
+                 std::cos((2 * y + 1) * v * M_PI / 16);
       sum *= (u == 0 ? std::sqrt(0.125) : 0.5) * (v == 0 ? std::sqrt(0.125) : 0.5);
       EXPECT_NEAR(fixed[v * kBlockSide + u] / 4.0, sum, 1) << u << " " << v;
     }
@@ -98,7 +103,8 @@ TEST(BlockTransform, ThereAndBackIsOffByAtMostOne) {
     std::mt19937 random(seed);
     Block f;
     // Both ends of the range in one block are the hardest.
-    for (int& v : f) v = seed % 2 == 0 ? static_cast<int>(random() % 511) - 255 : (random() % 2 == 0 ? 255 : -255);
+    for (int& v : f)
+      v = seed % 2 == 0 ? static_cast<int>(random() % 511) - 255 : (random() % 2 == 0 ? 255 : -255);
     const Block back = inverse_transform(forward_transform(f));
     for (int i = 0; i < kBlockTexels; ++i) ASSERT_LE(std::abs(back[i] - f[i]), 1) << "seed " << seed;
   }
@@ -133,7 +139,9 @@ TEST(BlockTransform, TheZigZagVisitsEveryPlaceOnceFromLowToHigh) {
 TEST(YCoCg, EveryCornerAndRandomColorsAreReversible) {
   std::mt19937 random(5);
   for (int i = 0; i < 4096; ++i) {
-    const auto channel = [&](int bit) { return i < 8 ? (i >> bit & 1) * 255 : static_cast<int>(random() % 256); };
+    const auto channel = [&](int bit) {
+      return i < 8 ? (i >> bit & 1) * 255 : static_cast<int>(random() % 256);
+    };
     const Rgb c{channel(0), channel(1), channel(2)};
     const YCoCg y = ycocg_from(c);
     EXPECT_TRUE(y.y >= 0 && y.y <= 255) << y.y;
@@ -208,12 +216,14 @@ TEST(BitStream, RunsBeyondTheirBlockAreCorrupt) {
 
 TEST(CompressChunk, AlphaIsLosslessAtEveryQuality) {
   for (const int quality : {1, 50, 80, 100})
-    for (const Chunk& chunk : {disc_chunk(), disc_chunk(3, 1), disc_chunk(40), uniform_chunk({40, 30, 20, 128})})
+    for (const Chunk& chunk :
+         {disc_chunk(), disc_chunk(3, 1), disc_chunk(40), uniform_chunk({40, 30, 20, 128})})
       expect_same_alpha(there_and_back(chunk, quality), chunk);
 }
 
 TEST(CompressChunk, HighestQualityIsOffByACodeValueOrTwo) {
-  for (const Chunk& chunk : {disc_chunk(), disc_chunk(20, 2), uniform_chunk({255, 0, 0, 255}), uniform_chunk({0, 0, 0, 255})})
+  for (const Chunk& chunk :
+       {disc_chunk(), disc_chunk(20, 2), uniform_chunk({255, 0, 0, 255}), uniform_chunk({0, 0, 0, 255})})
     EXPECT_LE(largest_difference(there_and_back(chunk, 100), chunk), 2);
 }
 
@@ -324,7 +334,7 @@ TEST(CompressChunk, NoiseIsStoredAsItIs) {
 TEST(DecompressChunk, EveryTruncationIsRejected) {
   for (const Chunk& chunk : {disc_chunk(), noise_chunk(1)}) {
     const auto bytes = compress_chunk(chunk, {80});
-    for (std::size_t length = 0; length < bytes.size(); length += bytes.size() > 4000 ? 97 : 1) {
+    for (std::size_t length = 0; length<bytes.size(); length += bytes.size()> 4000 ? 97 : 1) {
       Chunk decoded = disc_chunk();
       ASSERT_EQ(decompress_chunk(std::span(bytes).first(length), decoded), DecodeStatus::Truncated) << length;
       ASSERT_EQ(largest_difference(decoded, Chunk{}), 0) << "a rejected chunk is clear";
@@ -456,8 +466,9 @@ TEST(CompressSprite, TheBytesDoNotChange) {
     Chunk chunk;  // integers only, so that no libm takes part
     for (int i = 0; i < kTexels; ++i) {
       const int x = i % 32, y = i / 32, a = x + y < 20 ? 0 : x + y < 24 ? (x + y - 19) * 50 : 255;
-      chunk.texels[i] = {static_cast<std::uint8_t>(a * (x * 7 % 256) / 1024), static_cast<std::uint8_t>(a * y / 64),
-                         static_cast<std::uint8_t>(a / 3), static_cast<std::uint8_t>(a)};
+      chunk.texels[i] = {static_cast<std::uint8_t>(a * (x * 7 % 256) / 1024),
+                         static_cast<std::uint8_t>(a * y / 64), static_cast<std::uint8_t>(a / 3),
+                         static_cast<std::uint8_t>(a)};
     }
     for (const std::uint8_t b : compress_chunk(chunk, {quality})) hash = (hash ^ b) * 1099511628211ull;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes in the place of a compressed chunk. A status comes out; what is rejected is clear; what is accepted
-// can be compressed again.
+// Any bytes in the place of a compressed chunk. A status comes out; what is rejected is clear; what is
+// accepted can be compressed again.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A main for fuzz targets where libFuzzer is missing (it comes with clang): damages its seed files, or bytes of
-// its own, at random for a while. Without coverage it finds less; what it finds is as real.
+// A main for fuzz targets where libFuzzer is missing (it comes with clang): damages its seed files, or bytes
+// of its own, at random for a while. Without coverage it finds less; what it finds is as real.
 //
 //   TARGET [seconds, default 10] [seed number, default 1] [seed files…]
 #include <chrono>

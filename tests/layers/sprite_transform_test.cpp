@@ -153,6 +153,84 @@ TEST(PlaceSprite, EverySideHasATexelOfPadding) {
   }
 }
 
+// ---- motion blur [LS97 3.4]
+// -------------------------------------------------------------------------------------
+
+PlacementOptions blurred(dvec2 motion, double density) {
+  PlacementOptions options;
+  options.motion = motion;
+  options.motion_density = density;
+  return options;
+}
+
+/// Texels per pixel along a direction of the display.
+double density_along(const SpritePlacement& placement, dvec2 direction) {
+  const auto sprite_from_screen = *inverse(placement.screen_from_sprite);
+  return glm::length(sprite_from_screen(direction) - sprite_from_screen(dvec2(0))) / glm::length(direction);
+}
+
+TEST(PlaceSpriteForMotionBlur, OneAxisFollowsTheMotionWithFewerSamples) {
+  const Card card({120, 80}, {500, 450}, 0.3);
+  for (int degrees = 0; degrees < 360; degrees += 15) {
+    SCOPED_TRACE(degrees);
+    const double angle = degrees * std::numbers::pi / 180;
+    const dvec2 way(std::cos(angle), std::sin(angle)), across(-way.y, way.x);
+    const SpritePlacement placement = card.place({0, 0}, {}, blurred(7.0 * way, 0.25));
+    EXPECT_NEAR(density_along(placement, way), 0.25, 1e-12);
+    EXPECT_NEAR(density_along(placement, across), 1, 1e-12);
+    EXPECT_GT(placement.screen_from_sprite.determinant(), 0) << "not mirrored";
+    EXPECT_GT(placement.screen_from_sprite.a, 0) << "upright to 45 degrees";
+    expect_covers(placement, clipped_screen_points(card.moved({0, 0}), card.world.bound.hull), 1);
+  }
+}
+
+TEST(PlaceSpriteForMotionBlur, AtRestNothingChanges) {
+  const Card card({40.3, 25.6}, {300.2, 411.7});
+  const SpritePlacement sharp = card.place();
+  EXPECT_EQ(card.place({0, 0}, {}, blurred({0, 0}, 0.25)), sharp);
+  EXPECT_EQ(card.place({0, 0}, {}, blurred({5, 3}, 1)), sharp);
+  EXPECT_EQ(card.place({0, 0}, {}, blurred({kNan, 3}, 0.5)), sharp);
+  EXPECT_EQ(card.place({0, 0}, {}, blurred({HUGE_VAL, 0}, 0.5)), sharp);
+  EXPECT_EQ(card.place({0, 0}, {}, blurred({5, 3}, kNan)), sharp);
+}
+
+TEST(PlaceSpriteForMotionBlur, ThereAndBackHaveTheSameLattice) {
+  const Card card({60, 60}, {512, 512});
+  for (const dvec2 motion : {dvec2(3, 1), dvec2(-2, 9), dvec2(0, 4), dvec2(5, 0), dvec2(1, -1)})
+    EXPECT_EQ(card.place({0, 0}, {}, blurred(motion, 0.5)), card.place({0, 0}, {}, blurred(-2.0 * motion, 0.5)))
+        << motion.x << " " << motion.y;
+}
+
+TEST(PlaceSpriteForMotionBlur, AlongAnAxisTheSpriteStaysAxisAligned) {
+  const Card card({100, 50}, {400, 400});
+  const SpritePlacement x = card.place({0, 0}, {}, blurred({-8, 0}, 0.25));
+  const SpritePlacement y = card.place({0, 0}, {}, blurred({0, 8}, 0.25));
+  EXPECT_TRUE(x.axis_aligned && y.axis_aligned);
+  EXPECT_EQ(x.screen_from_sprite.a, 4);
+  EXPECT_EQ(x.screen_from_sprite.d, 1);
+  EXPECT_EQ(y.screen_from_sprite.a, 1);
+  EXPECT_EQ(y.screen_from_sprite.d, 4);
+  EXPECT_LT(x.size_px.x, 2 * 100 / 4 + 5);
+  EXPECT_LT(y.size_px.y, 2 * 50 / 4 + 5);
+}
+
+TEST(PlaceSpriteForMotionBlur, AGrownSpriteHasTheSameSamples) {
+  const Card card({700, 500}, {512, 512});
+  const PlacementOptions options = blurred({6, 2}, 0.2);
+  ExtentOptions none;
+  none.expected_reuse_frames = 0;
+  expect_same_lattice(card.place({6, 2}, none, options), card.place({6, 2}, {}, options));
+}
+
+TEST(PlaceSpriteForMotionBlur, DensityIsBoundFromBelow) {
+  const Card card({200, 200}, {512, 512});
+  for (const double density : {1e-9, 0.0, -3.0})
+    EXPECT_NEAR(density_along(card.place({0, 0}, {}, blurred({1, 0}, density)), {1, 0}), 1.0 / 16, 1e-12);
+  // Tiny and huge motions have a direction too.
+  for (const double length : {1e-300, 1e300})
+    EXPECT_EQ(card.place({0, 0}, {}, blurred({0, length}, 0.5)), card.place({0, 0}, {}, blurred({0, 1}, 0.5)));
+}
+
 // ---- extents [LS97 3.2]
 // -----------------------------------------------------------------------------------------
 

@@ -43,7 +43,8 @@ TEST(FrameWriter, SubmitWaitsWhileTheQueueIsFull) {
       ++submitted;
     }
   });
-  // One at work and two that wait; the fourth call cannot return while the gate is shut, however long we look.
+  // One at work and two that wait; the fourth call cannot return while the gate is shut, however long we
+  // look.
   while (submitted < 3) std::this_thread::yield();
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(submitted, 3);

@@ -35,6 +35,24 @@ TEST(FrameLine, RoundTripsThroughJsonWithQuality) {
   EXPECT_TRUE(std::isinf(back->quality->reuse.psnr_db));
 }
 
+TEST(FrameLine, RoundTripsThroughJsonWithCompression) {
+  FrameLine line = drawn_line(7);
+  EXPECT_FALSE(nlohmann::json::parse(json_of(line)).contains("compression")) << "not called for: not there";
+  line.compression = CompressionReport{};
+  line.compression->original_bytes = 40960;
+  line.compression->compressed_bytes = 4096;
+  line.compression->error = {123456, 7'654'321'012'345, 0, 1024};
+  line.compression->cache = {3, 1, 400};
+  const std::optional<FrameLine> back = frame_line_from_json(json_of(line));
+  ASSERT_TRUE(back && back->compression);
+  EXPECT_EQ(json_of(*back), json_of(line));
+  EXPECT_EQ(back->compression->error, line.compression->error);
+  const nlohmann::json json = nlohmann::json::parse(json_of(line))["compression"];
+  EXPECT_EQ(json["ratio"], 10);
+  EXPECT_EQ(json["cache_hit_rate"], 0.75);
+  EXPECT_TRUE(json["alpha_psnr_db"].is_null()) << "lossless";
+}
+
 TEST(FrameLine, CutOrForeignLinesAreRefused) {
   const std::string whole = json_of(drawn_line(7));
   for (std::size_t length = 0; length < whole.size(); ++length)
