@@ -5,18 +5,17 @@
 ///
 /// A sample is a layer at a frame f, shown by its own sprite of frame f - a, a = 1, 2, 4, … 32, whatever any
 /// policy would think of it. The layer alone is composited twice over mid grey (linear 0.5), the same grey
-/// for every layer:
+/// for every layer: *old* is the sprite of f - a, carried by the fitted warp, *fresh* that of f, without one.
 ///
-///   old     the sprite of f - a, carried by the fitted warp
-///   fresh   the sprite of f, without a warp
+/// error: e = √(Σ (old - fresh)² / 3n), sRGB code values 0 … 255, over the n pixels that the layer covers by
+/// half or more in either picture
 ///
-///   error          e = √(Σ (old - fresh)² / 3n), sRGB code values 0 … 255, over the n pixels that the layer
-///                  covers by half or more in either picture
-///   PSNR           20 log₁₀(255 / e), dB, over the same pixels
-///   apparent shift √(2 Σ ΔI² / Σ |∇I|²), px, I the luma: by how much a picture with these gradients, in
-///                  directions that are evenly spread, would have to be shifted to differ so much; over the
-///                  pixels that both pictures cover, edges excepted. It takes the contrast of the texture out
-///                  of the error, and saturates where the shift exceeds the size of the texture's details.
+/// PSNR: 20 log₁₀(255 / e), dB, over the same pixels
+///
+/// apparent shift: √(2 Σ ΔI² / Σ |∇I|²), px, I the luma: by how much a picture with these gradients, in
+/// directions that are evenly spread, would have to be shifted to differ so much; over the pixels that both
+/// pictures cover, edges excepted. It takes the contrast of the texture out of the error, and saturates where
+/// the shift exceeds the size of the texture's details.
 ///
 /// Both sprites are judged by `assess_sprite`, which is what the regulator sees. Samples whose fit is not
 /// usable are left out: the regulator never shows them.

@@ -2,8 +2,9 @@
 #pragma once
 
 /// How many renders does knowing the motion N frames ahead save? Policy lookahead over N, between `threshold`
-/// (N = 0 by definition) and `oracle` (all of the sequence known), all under the same bound. Plans only: no
-/// pixel is drawn.
+/// and `oracle` (all of the sequence known), all under the same bound. With N = 0 sprites are drawn as of
+/// now, as `threshold` draws them; what differs is how far clipped ones grow, since `threshold` grows them by
+/// how long the last one lasted. Plans only: no pixel is drawn.
 
 #include <cstdint>
 #include <string>

@@ -42,33 +42,38 @@ PixelRect reach_of(const ShownSprite& sprite, ivec2 display_px) {
           ivec2(glm::ceil(glm::clamp(hi, dvec2(0), display)))};
 }
 
-bool holds(const dvec2& size, const dvec3& q) {
-  return q.z > 0 && q.x >= 0 && q.x <= size.x * q.z && q.y >= 0 && q.y <= size.y * q.z;
+/// Does the sprite hold anything at the homogeneous sprite point q?
+bool holds_something(const chunker::Sprite& picture, const dvec3& q) {
+  const dvec2 size(picture.size_px());
+  const bool inside = q.z > 0 && q.x >= 0 && q.x < size.x * q.z && q.y >= 0 && q.y < size.y * q.z;
+  if (!inside) return false;
+  return picture.texel(static_cast<int>(q.x / q.z), static_cast<int>(q.y / q.z)) != chunker::Texel{};
 }
 
-void mark(PixelMask& mask, const ShownSprite& sprite, ivec2 display_px) {
+void mark(PixelMask& mask, const ShownSprite& sprite, const chunker::Sprite& picture, ivec2 display_px) {
   const double det = glm::determinant(sprite.screen_from_sprite);
   if (!is_finite(sprite.screen_from_sprite) || !std::isfinite(det) || det == 0) return;  // shows nothing
   const dmat3 sprite_from_screen = glm::inverse(sprite.screen_from_sprite);
   if (!is_finite(sprite_from_screen)) return;
-  const dvec2 size(sprite.size_px);
   const PixelRect reach = reach_of(sprite, display_px);
   for (int y = reach.lo.y; y < reach.hi.y; ++y) {
     std::uint8_t* row = mask.data() + static_cast<std::size_t>(y) * display_px.x;
     for (int x = reach.lo.x; x < reach.hi.x; ++x)
-      if (!row[x]) row[x] = holds(size, sprite_from_screen * dvec3(x + 0.5, y + 0.5, 1));
+      if (!row[x]) row[x] = holds_something(picture, sprite_from_screen * dvec3(x + 0.5, y + 0.5, 1));
   }
 }
 
 }  // namespace
 
-PixelMask stepping_pixels(std::span<const int> shown_before, const FrameReport& now, ivec2 display_px) {
+PixelMask stepping_pixels(std::span<const int> shown_before, const FrameReport& now,
+                          const chunker::SpriteStore& sprites, ivec2 display_px) {
   PixelMask mask(static_cast<std::size_t>(display_px.x) * display_px.y, 0);
   for (const ShownSprite& sprite : now.shown) {
     const bool drawn_again =
         now.plan.decisions[sprite.layer].action == regulator::Action::Rerender &&
         std::find(shown_before.begin(), shown_before.end(), sprite.layer) != shown_before.end();
-    if (drawn_again) mark(mask, sprite, display_px);
+    const chunker::Sprite* picture = drawn_again ? sprites.find(sprite.layer) : nullptr;
+    if (picture) mark(mask, sprite, *picture, display_px);
   }
   return mask;
 }

@@ -4,24 +4,29 @@
 /// How hard does the picture jump when a sprite is drawn again? [LS97 7] names the "clicking" and has no
 /// number for it.
 ///
-///   E_f(x) = shown_f(x) - reference_f(x)      the signed error image, sRGB code values per channel, -255 …
-///   255 D_f(x) = E_f(x) - E_{f-1}(x)              what the error did between two consecutive frames A_f
-///   pixels whose centre lies in the display rectangle of a sprite
-///                                             that was drawn again in f and was shown in f - 1, too
+///   E_f(x) = shown_f(x) - reference_f(x)    signed error image, sRGB code values per channel
 ///
-///   popping     RMS of D_f over the pixels of A_f and their three channels, over all frames measured
-///   p95         the 95th percentile over the same pixels of maxᶜ |D_f|, whole code values
-///   elsewhere   RMS of D_f over all other pixels: how fast the error changes where nothing was drawn again
+///   D_f(x) = E_f(x) - E_{f-1}(x)            what the error did between two consecutive frames
+///
+///   A_f      pixels whose centre lies in the display rectangle of a sprite that was drawn again in f and
+///            was shown in f - 1, too, at a texel that is not clear
+///
+/// popping: RMS of D_f over the pixels of A_f and their three channels, over all frames measured
+///
+/// p95: the 95th percentile over the same pixels of maxᶜ |D_f|, whole code values
+///
+/// elsewhere: RMS of D_f over all other pixels: how fast the error changes where nothing was drawn again
 ///
 /// Why a step of the error and not the error: a constant error is part of the picture. A ship that is always
-/// shown two pixels too far left, or land that is always a little too dark, looks as if it were so, and D =
-/// 0. What the eye catches is the frame in which the ship jumps back to its place: there E falls from the
+/// shown two pixels too far left, or land that is always a little too dark, looks as if it were so, and D is
+/// zero. What the eye catches is the frame in which the ship jumps back to its place: there E falls from the
 /// error of the old sprite to that of the fresh one at once, and D is the height of this step. Both frames
-/// are compared with their own reference, so the motion that belongs to the scene drops out.
+/// are compared with their own reference, so motion that is shown as it should be drops out. Motion of what
+/// is shown wrongly does not (its error moves with it), which is why D is taken where sprites are fresh.
 ///
 /// Under `reference` D = 0 everywhere; so it is for a policy whose error does not change. A first appearance
-/// is no step: there was nothing that could jump. Where the rectangle also shows other layers, their error is
-/// part of D; `elsewhere` says how much that may be.
+/// is no step: there was nothing that could jump. Where other layers lie before the sprite or show through
+/// it, their error is part of D; `elsewhere` says how much that may be.
 ///
 /// Unit: code values 0 … 510; best 0. One code value is 1/255 of the range from black to white.
 
@@ -38,10 +43,10 @@ namespace talisman::sequences {
 /// One byte per pixel, row by row; not 0 where the pixel belongs to the set.
 using PixelMask = std::vector<std::uint8_t>;
 
-/// A_f: `now` is the report of frame f, `shown_before` the layers that frame f - 1 showed. Cost: O(area of
-/// the rectangles on the display).
+/// A_f: `now` is the report of frame f, which was drawn, `sprites` the store after it, `shown_before` the
+/// layers that frame f - 1 showed. Cost: O(area of the rectangles on the display).
 PixelMask stepping_pixels(std::span<const int> shown_before, const FrameReport& now,
-                          layers::ivec2 display_px);
+                          const chunker::SpriteStore& sprites, layers::ivec2 display_px);
 
 /// Two consecutive frames.
 struct ConsecutiveFrames {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 #include "layers/check.h"
 #include "sequences/diff.h"
@@ -52,8 +53,9 @@ class SettingRun {
     drawn_.push_back(summary_.frames.back());
     qualities_.push_back({std::to_string(report_.frame), compare(now_, truth.now)});
     if (before_.rgb.empty()) return;
-    popping_.add({before_, now_}, truth,
-                 stepping_pixels(layers_before_, report_, pipeline_.settings.view.display_px));
+    popping_.add(
+        {before_, now_}, truth,
+        stepping_pixels(layers_before_, report_, state_.sprites, pipeline_.settings.view.display_px));
   }
 
   ConsecutiveFrames pictures() const { return {before_, now_}; }
@@ -104,17 +106,45 @@ SettingResult SettingRun::result() const {
   return result;
 }
 
+/// How often the sampled frames have met each phase of each period of hold and interpolate.
+class Phases {
+ public:
+  Phases() {
+    for (const int period : compared_holds()) hits_.emplace_back(period, 0);
+  }
+  /// Times that the phases of `frame` were met, each in proportion to how rare it is.
+  int met(int frame) const {
+    int weighted = 0;
+    for (const std::vector<int>& hits : hits_)
+      weighted += static_cast<int>(hits.size()) * hits[frame % hits.size()];
+    return weighted;
+  }
+  void add(int frame) {
+    for (std::vector<int>& hits : hits_) ++hits[frame % hits.size()];
+  }
+
+ private:
+  std::vector<std::vector<int>> hits_;
+};
+
 }  // namespace
 
 std::vector<int> sampled_frames(const ExperimentFrames& frames) {
   TALISMAN_CHECK_GE(frames.every, 1);
   TALISMAN_CHECK_LE(frames.first, frames.last);
-  const double golden = (std::sqrt(5.0) - 1) / 2;
+  Phases phases;
   std::vector<int> sampled;
-  for (int stratum = 0; frames.first + stratum * frames.every <= frames.last; ++stratum) {
-    const double share = stratum * golden - std::floor(stratum * golden);
-    const int frame = frames.first + stratum * frames.every + static_cast<int>(frames.every * share);
-    sampled.push_back(std::min(frame, frames.last));
+  for (int begin = frames.first; begin <= frames.last; begin += frames.every) {
+    const int end = begin + std::min(frames.every - 1, frames.last - begin);
+    const auto rank = [&](int frame) {
+      return std::pair{phases.met(frame), std::abs(2 * frame - begin - end)};
+    };
+    int best = begin == 0 && end > 0 ? 1 : begin;  // frame 0 has no predecessor
+    for (int frame = best + 1; frame <= end; ++frame)
+      if (rank(frame) < rank(best)) best = frame;
+    sampled.push_back(best);
+    phases.add(best);
+    if (end == frames.last) break;  // the next stratum might begin beyond the largest number
   }
   return sampled;
 }

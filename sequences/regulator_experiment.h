@@ -6,15 +6,14 @@
 ///
 /// Plans are made of every frame of the range (and of those before it, as in any run). Pictures are drawn of
 /// some: the range is cut into strata of `every` frames, and in each one frame f and its predecessor f - 1
-/// are drawn, f for quality and time, both for popping. Where f lies in its stratum is
-///
-///   ⌊every · frac(j φ)⌋        j the number of the stratum, φ = (√5 - 1) / 2
-///
-/// so that no period of hold or interpolate stays in step with the sampling. A sprite that was planned for a
-/// frame between is drawn when f - 1 needs it (step.h), outside of all that is timed. every = 1 draws all.
+/// are drawn, f for quality and time, both for popping. In its stratum f is the frame whose phases in the
+/// periods of hold and interpolate (f mod 2, 3, 5, 8) were met least so far, each weighted by its period, and
+/// of those the one nearest to the middle: so no policy is seen at its renders, or between them, too often. A
+/// sprite that was planned for a frame between is drawn when f - 1 needs it (step.h), outside of all that is
+/// timed. every = 1 draws all.
 ///
 /// Frame by frame all settings advance side by side; the frame of `reference`, the first of them, is the
-/// truth of the others and is drawn once. Memory: sprites and one picture per setting, numbers of a few
+/// truth of the others and is drawn once. Memory: sprites and two pictures per setting, numbers of a few
 /// hundred bytes per frame; the oracle besides keeps the states of its layers over the whole sequence.
 ///
 /// Times are measured on this machine and differ from run to run; all other numbers are the same in every

@@ -30,7 +30,9 @@ PlotSeries series_of(const RegulatorReport& report, const Scatter& at, const std
   for (std::size_t k = 0; k < report.settings.size(); ++k) {
     if (report.settings[k].setting.series != name) continue;
     series.points.push_back({at.x[k], at.y[k]});
-    series.labels.push_back(report.settings[k].setting.knob());
+    // The thresholds of lookahead and oracle are those of the policy threshold, and lie close to it.
+    const bool repeated = report.settings[k].setting.unit == "px" && name != "threshold";
+    series.labels.push_back(repeated ? "" : report.settings[k].setting.knob());
   }
   return series;
 }
@@ -124,8 +126,8 @@ Plot popping_plot(const RegulatorReport& report) {
 }
 
 Plot lookahead_plot(const LookaheadCurve& curve) {
-  Plot plot{"renders against frames known ahead, bound " + fixed(curve.geometric_px, 2) + " px",
-            {"N of lookahead (0 is drawn at 0.5)", "frames", true},
+  Plot plot{"lookahead: renders against frames known ahead, bound " + fixed(curve.geometric_px, 2) + " px",
+            {"N, frames known ahead (0 is drawn at 0.5)", "frames", true},
             {"update rate, mean over layers", "%", false},
             {}};
   const double last = curve.points.empty() ? 1 : std::max(curve.points.back().frames, 1);

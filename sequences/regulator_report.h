@@ -3,15 +3,15 @@
 
 /// The results of `talisman accuracy --regulator`, as tables, CSV, JSON and pictures.
 ///
-///   regulator.csv              one line per setting: what was drawn, what it cost, how far it is from the
-///   truth regulator.svg              FLIP against measured time per frame; the Pareto front is marked
-///   regulator-polygons.svg     FLIP against polygons drawn: the same without the noise of a clock
-///   regulator-bound.svg        largest geometric error displayed against renders; the oracle is the floor
-///   regulator-popping.svg      step of the error at a re-render against polygons drawn (popping.h)
-///   lookahead.csv, .svg        renders against N of lookahead, between threshold and oracle
-///   calibration.csv            one line per sample: fiducials and image error (calibration.h)
-///   calibration-NAME.svg       image error against one fiducial, with the medians of its octaves
-///   regulator.json             talisman.regulator/1: all of it but the samples
+/// - regulator.csv: one line per setting, what was drawn, what it cost, how far it is from the truth
+/// - regulator.svg: FLIP against measured time per frame; the Pareto front is marked
+/// - regulator-polygons.svg: FLIP against polygons drawn, the same without the noise of a clock
+/// - regulator-bound.svg: largest geometric error displayed against renders; the oracle is the floor
+/// - regulator-popping.svg: step of the error at a re-render against polygons drawn (popping.h)
+/// - lookahead.csv, lookahead.svg: renders against N of lookahead, between threshold and oracle
+/// - calibration.csv: one line per sample, fiducials and image error (calibration.h)
+/// - calibration-NAME.svg: image error against one fiducial, with the medians of its octaves
+/// - regulator.json: talisman.regulator/1, all of it but the samples
 ///
 /// Beside each SVG lies a CSV with the points that it shows. Columns named `wall_…` are measured times; all
 /// else is the same in every run.

@@ -86,6 +86,17 @@ TEST(PlotScript, PointsThatCannotBeDrawnLeaveAGap) {
   EXPECT_THAT(plot_script(plot), HasSubstr("END_OF_DATA\n1 2\n\n\n\n3 4\nEND_OF_DATA\n"));
 }
 
+// Thousands of points must show where they are dense.
+TEST_F(PlotFilesTest, CloudsAreTranslucentPointsWithoutALine) {
+  Plot plot = sample();
+  plot.series = {{"samples", {{1, 2}, {3, 4}}, SeriesStyle::Cloud}};
+  const std::string script = plot_script(plot);
+  EXPECT_THAT(script, HasSubstr("with points linecolor rgb '#A00072B2' pointtype 7"));
+  EXPECT_THAT(script, Not(HasSubstr("linewidth 2")));
+  write_plot(dir_, "cloud", plot);
+  EXPECT_THAT(content("cloud.svg"), HasSubstr("samples"));
+}
+
 TEST_F(PlotFilesTest, SvgAndCsvAndNothingElse) {
   write_plot(dir_, "rate", sample());
   EXPECT_EQ(files(), 2u);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/popping.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -127,55 +128,71 @@ TEST(PoppingMeter, NothingMeasuredIsNoPopping) {
 
 // --- Where
 
-FrameReport report_of(const dmat3& screen_from_sprite, ivec2 size_px, regulator::Action action) {
+constexpr ivec2 kDisplay{32, 24};
+const std::vector<int> kShownBefore{0};
+
+/// A frame that shows one sprite, opaque to the left of texel `clear_from_x`.
+struct OneSprite {
   FrameReport report;
-  report.plan.decisions.resize(1);
-  report.plan.decisions[0].action = action;
-  report.shown.push_back({0, screen_from_sprite, size_px, 0});
-  return report;
-}
+  chunker::SpriteStore store;
+
+  OneSprite(const dmat3& screen_from_sprite, ivec2 size_px,
+            regulator::Action action = regulator::Action::Rerender, int clear_from_x = 1000) {
+    report.plan.decisions.resize(1);
+    report.plan.decisions[0].action = action;
+    report.shown.push_back({0, screen_from_sprite, size_px, 0});
+    chunker::Sprite sprite(size_px);
+    for (int row = 0; row < sprite.chunks().y; ++row)
+      for (int column = 0; column < sprite.chunks().x; ++column) {
+        chunker::Chunk chunk{};
+        for (int y = 0; y < 32; ++y)
+          for (int x = 0; x < 32; ++x)
+            if (32 * column + x < std::min(size_px.x, clear_from_x) && 32 * row + y < size_px.y)
+              chunk.texels[32 * y + x] = {9, 9, 9, 255};
+        sprite.store(column, row, chunk);
+      }
+    store.put(0, std::move(sprite));
+  }
+
+  PixelMask mask(const std::vector<int>& shown_before = kShownBefore) const {
+    return stepping_pixels(shown_before, report, store, kDisplay);
+  }
+};
 
 dmat3 shifted(double x, double y) { return {1, 0, 0, 0, 1, 0, x, y, 1}; }
 
 int area(const PixelMask& mask) { return std::accumulate(mask.begin(), mask.end(), 0); }
 
-constexpr ivec2 kDisplay{32, 24};
-const std::vector<int> kShownBefore{0};
-
 TEST(SteppingPixels, AreThoseWhoseCentreIsInTheRectangle) {
   // From 3.6 to 8.6: the centres 4.5 … 8.5; from 2 to 6: the centres 2.5 … 5.5.
-  const PixelMask mask = stepping_pixels(
-      kShownBefore, report_of(shifted(3.6, 2), {5, 4}, regulator::Action::Rerender), kDisplay);
+  const PixelMask mask = OneSprite(shifted(3.6, 2), {5, 4}).mask();
   EXPECT_EQ(area(mask), 5 * 4);
   EXPECT_EQ(mask[2 * 32 + 3], 0);
   EXPECT_EQ(mask[2 * 32 + 4], 1);
   EXPECT_EQ(mask[5 * 32 + 8], 1);
 }
 
+TEST(SteppingPixels, ClearTexelsCannotJump) {
+  EXPECT_EQ(area(OneSprite(shifted(3, 2), {10, 4}, regulator::Action::Rerender, 6).mask()), 6 * 4);
+  EXPECT_EQ(area(OneSprite(shifted(3, 2), {10, 4}, regulator::Action::Rerender, 0).mask()), 0);
+}
+
 TEST(SteppingPixels, OnlySpritesThatAreDrawnAgain) {
-  const dmat3 at = shifted(3, 2);
-  EXPECT_EQ(area(stepping_pixels(kShownBefore, report_of(at, {5, 4}, regulator::Action::Reuse), kDisplay)),
-            0);
-  EXPECT_EQ(area(stepping_pixels({}, report_of(at, {5, 4}, regulator::Action::Rerender), kDisplay)), 0)
-      << "a first appearance does not jump";
+  EXPECT_EQ(area(OneSprite(shifted(3, 2), {5, 4}, regulator::Action::Reuse).mask()), 0);
+  EXPECT_EQ(area(OneSprite(shifted(3, 2), {5, 4}).mask({})), 0) << "a first appearance does not jump";
 }
 
 TEST(SteppingPixels, RectanglesBeyondTheDisplayAreCut) {
-  const auto rerendered = [](const dmat3& map, ivec2 size) {
-    return area(stepping_pixels(kShownBefore, report_of(map, size, regulator::Action::Rerender), kDisplay));
-  };
-  EXPECT_EQ(rerendered(shifted(-10, -10), {100, 100}), 32 * 24);
-  EXPECT_EQ(rerendered(shifted(30, 20), {100, 100}), 2 * 4);
-  EXPECT_EQ(rerendered(shifted(500, 500), {10, 10}), 0);
-  EXPECT_EQ(rerendered(shifted(1e300, 0), {10, 10}), 0);
+  EXPECT_EQ(area(OneSprite(shifted(-10, -10), {100, 100}).mask()), 32 * 24);
+  EXPECT_EQ(area(OneSprite(shifted(30, 20), {100, 100}).mask()), 2 * 4);
+  EXPECT_EQ(area(OneSprite(shifted(500, 500), {10, 10}).mask()), 0);
+  EXPECT_EQ(area(OneSprite(shifted(1e300, 0), {10, 10}).mask()), 0);
 }
 
 TEST(SteppingPixels, MapsThatShowNothingMarkNothing) {
   for (const dmat3& map :
        {dmat3(0.0), dmat3(1, 0, 0, 1, 0, 0, 3, 3, 1), shifted(NAN, 0), shifted(0, HUGE_VAL)})
-    EXPECT_EQ(
-        area(stepping_pixels(kShownBefore, report_of(map, {8, 8}, regulator::Action::Rerender), kDisplay)),
-        0);
+    EXPECT_EQ(area(OneSprite(map, {8, 8}).mask()), 0);
 }
 
 /// Inside by the sides of the image quadrilateral, forwards only.
@@ -207,8 +224,7 @@ TEST(SteppingPixels, AgreeWithTheImageOfTheRectangleUnderRandomPerspectiveMaps) 
                     -scale * std::sin(angle), scale * std::cos(angle), uniform(0, 0.02),
                     uniform(-5, 35),          uniform(-5, 30),         1};
     const ivec2 size{1 + int(random() % 20), 1 + int(random() % 20)};
-    const PixelMask mask =
-        stepping_pixels(kShownBefore, report_of(map, size, regulator::Action::Rerender), kDisplay);
+    const PixelMask mask = OneSprite(map, size).mask();
     for (int y = 0; y < kDisplay.y; ++y)
       for (int x = 0; x < kDisplay.x; ++x)
         ASSERT_EQ(mask[y * kDisplay.x + x] != 0, in_quadrilateral(map, size, {x + 0.5, y + 0.5}))

@@ -249,6 +249,21 @@ TEST_F(Tool, InspectPrintsTheEffectTable) {
   EXPECT_EQ(json["effects"]["texture"]["why"], "no material has a texture");
 }
 
+TEST_F(Tool, AccuracyOfTheRegulatorOnABareModel) {
+  const Outcome outcome =
+      run("accuracy --regulator cube.obj --frames 0-11 --size 64x48 --quality-every 4 --progress none --out o");
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("threshold"), HasSubstr("oracle"), HasSubstr("results in o")));
+  for (const char* name : {"regulator.csv", "regulator.svg", "regulator.json", "lookahead.csv", "calibration.csv"})
+    EXPECT_TRUE(fs::exists(folder_ / "o" / name)) << name;
+  expect_bad_input("accuracy --regulator nothing", {"nothing"});
+  expect_bad_input("accuracy --regulator cube.obj --frames 5-2", {"--frames", "5-2"});
+  expect_bad_input("accuracy --regulator cube.obj --size 0x9", {"--size", "0x9"});
+  expect_bad_input("accuracy --regulator cube.obj --quality-every -2", {"--quality-every", "-2"});
+  expect_bad_input("accuracy --solvers --regulator cube.obj", {"two experiments"});
+  expect_bad_input("accuracy", {"nothing to measure", "--regulator"});
+}
+
 TEST_F(Tool, DiffOfEqualFoldersIsIdentical) {
   ASSERT_EQ(run("render cube.obj --out a --frames 0-2 --size 64x48 --progress none").exit_code, 0);
   ASSERT_EQ(run("render cube.obj --out b --frames 0-2 --size 64x48 --progress none --threads 1").exit_code,
