@@ -39,7 +39,10 @@ bool casts(const layers::Scene& scene, const layers::Part& part) {
 
 std::vector<Caster> casters_of(const layers::SceneFrame& frame, std::span<const int> parts) {
   SpriteView world;  // a view whose sprite space is the world
-  for (int r = 0; r < 3; ++r) world.sprite_from_world.row[r][r] = 1;
+  for (int r = 0; r < 3; ++r) {
+    world.sprite_from_world.row[r] = dvec4(0);
+    world.sprite_from_world.row[r][r] = 1;
+  }
   std::vector<Caster> casters;
   for (const int index : parts) {
     const layers::Part& part = frame.scene->parts[index];

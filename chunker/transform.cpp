@@ -118,6 +118,11 @@ ProjectedVertex project_cut(const SpriteView& view, dvec3 p) {
   p.x = std::clamp(p.x, lo.x * p.z, hi.x * p.z);
   p.y = std::clamp(p.y, lo.y * p.z, hi.y * p.z);
   ProjectedVertex v = project(view, p);
+  if (v.flags & kOutsideGuard) {  // the division's rounding led out again
+    v.x = snap(std::clamp(p.x / p.z, lo.x, hi.x));
+    v.y = snap(std::clamp(p.y / p.z, lo.y, hi.y));
+    v.flags = static_cast<std::uint8_t>(v.flags & ~kOutsideGuard);
+  }
   if (v.flags & kClipFlags) v.flags = kNotFinite;
   return v;
 }

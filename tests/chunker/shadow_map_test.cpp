@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shadow maps against rays, against known shadows, and on what no map should choke on.
+#include "chunker/shadow_map.h"
+
+#include <cstring>
+#include <random>
+
+#include <glm/geometric.hpp>
+#include <tbb/global_control.h>
+
+#include "tests/chunker/shade_support.h"
+
+namespace talisman::chunker::tests {
+namespace {
+
+/// Does the segment from a to b meet the triangle?
+bool meets(const dvec3& a, const dvec3& b, const std::array<dvec3, 3>& t) {
+  const dvec3 d = b - a, e1 = t[1] - t[0], e2 = t[2] - t[0], p = glm::cross(d, e2);
+  const double det = glm::dot(e1, p);
+  if (std::abs(det) < 1e-14) return false;
+  const dvec3 s = (a - t[0]) / det, q = glm::cross(s, e1);
+  const double u = glm::dot(s, p), v = glm::dot(d, q), at = glm::dot(e2, q);
+  return u >= 0 && v >= 0 && u + v <= 1 && at > 1e-6 && at < 1;
+}
+
+/// The slow truth: is the light seen from `p`?
+bool sees_light(const layers::SceneFrame& frame, int light, std::span<const int> casters, const dvec3& p) {
+  const layers::LightState& l = frame.lights[light];
+  const dvec3 end =
+      l.kind == layers::Light::Kind::Directional ? p - glm::normalize(l.direction) * 100.0 : l.position;
+  for (const int part : casters) {
+    const layers::Mesh& mesh = frame.scene->meshes[frame.scene->parts[part].mesh];
+    const std::vector<dvec3> world = layers::world_positions(frame, frame.scene->parts[part]);
+    for (std::size_t i = 0; i < mesh.indices.size(); i += 3)
+      if (meets(p, end, {world[mesh.indices[i]], world[mesh.indices[i + 1]], world[mesh.indices[i + 2]]}))
+        return false;
+  }
+  return true;
+}
+
+const std::vector<int> kCasters{Stage::kCube, Stage::kBall};
+
+/// Share of random places around the casters where a sharp map and a ray disagree. Places inside a caster or
+/// close to one belong to the bias and are left out.
+double disagreement(const Stage& stage, int light, unsigned seed) {
+  const layers::SceneFrame frame = stage.scene.at(0);
+  layers::ShadowMapOptions options;
+  options.resolution_px = 256;
+  options.pcf_radius = 0;
+  const ShadowMap map = make_shadow_map(frame, light, kCasters, options);
+  EXPECT_FALSE(map.empty());
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> across(-2, 2), up(-1, 2.5);
+  int tried = 0, wrong = 0, dark = 0;
+  while (tried < 800) {
+    const dvec3 p(across(random), up(random), across(random));
+    const dvec3 from_cube = glm::abs(p - dvec3(-0.4, 0.9, 0)), from_ball = p - dvec3(0.9, 0.7, 0.6);
+    if (std::max({from_cube.x, from_cube.y, from_cube.z}) < 0.6 || glm::length(from_ball) < 0.6) continue;
+    const layers::LightState& l = frame.lights[light];
+    if (l.kind == layers::Light::Kind::Spot &&
+        glm::dot(glm::normalize(p - l.position), l.direction) < std::cos(l.outer_cone_rad))
+      continue;  // dark anyway
+    const bool lit = sees_light(frame, light, kCasters, p);
+    ++tried;
+    dark += lit ? 0 : 1;
+    wrong += (map.visibility(p) > 0.5f) != lit ? 1 : 0;
+  }
+  EXPECT_GT(dark, 10) << "seed " << seed;
+  return static_cast<double>(wrong) / tried;
+}
+
+TEST(ShadowMap, SunAgreesWithRays) { EXPECT_LT(disagreement(Stage(), Stage::kSun, 1), 0.02); }
+
+TEST(ShadowMap, SpotAgreesWithRays) { EXPECT_LT(disagreement(Stage(), Stage::kSpot, 2), 0.02); }
+
+// Beside the casters: one map towards them is enough.
+TEST(ShadowMap, PointBesideTheCastersTakesOneMap) {
+  Stage stage;
+  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
+  EXPECT_LT(disagreement(stage, Stage::kSpot, 3), 0.02);
+  EXPECT_EQ(make_shadow_map(stage.scene.at(0), Stage::kSpot, kCasters).faces().size(), 1u);
+}
+
+// Among the casters: six maps, and no light leaks through their seams.
+TEST(ShadowMap, PointAmongTheCastersTakesSixMaps) {
+  Stage stage;
+  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
+  stage.scene.lights[Stage::kSpot].position = {0.35, 0.8, 0.4};
+  EXPECT_LT(disagreement(stage, Stage::kSpot, 4), 0.02);
+  EXPECT_EQ(make_shadow_map(stage.scene.at(0), Stage::kSpot, kCasters).faces().size(), 6u);
+}
+
+// Inside a closed cube the light reaches its walls and nothing beyond them, in every direction, filter or
+// not.
+TEST(ShadowMap, LightInsideAnObjectStaysInside) {
+  Stage stage;
+  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
+  stage.scene.lights[Stage::kSpot].position = {-0.4 + 0.05, 0.9 - 0.1, 0.02};
+  const std::vector<int> cube{Stage::kCube};
+  for (const int radius : {0, 1, 3}) {
+    layers::ShadowMapOptions options;
+    options.resolution_px = 64;
+    options.pcf_radius = radius;
+    const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSpot, cube, options);
+    std::mt19937 random(5);
+    std::normal_distribution<double> normal(0, 1);
+    for (int n = 0; n < 2000; ++n) {
+      const dvec3 d = glm::normalize(dvec3(normal(random), normal(random), normal(random)));
+      EXPECT_EQ(map.visibility(stage.scene.lights[Stage::kSpot].position + d * 3.0), 0)
+          << d.x << " " << d.y << " " << d.z << " radius " << radius;
+      EXPECT_EQ(map.visibility(stage.scene.lights[Stage::kSpot].position + d * 0.2), 1);
+    }
+  }
+}
+
+// Straight down on a cube of one metre: the shadow's edges are those of the cube, within a texel.
+TEST(ShadowMap, EdgesLieWhereTheyMust) {
+  Stage stage;
+  stage.scene.lights[Stage::kSun].direction = {0, -1, 0};
+  layers::ShadowMapOptions options;
+  options.pcf_radius = 0;
+  options.resolution_px = 100;
+  const std::vector<int> cube{Stage::kCube};
+  const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSun, cube, options);
+  const double texel = 1.0 / 98 * 1.01;
+  for (double z = -0.45; z < 0.46; z += 0.05)
+    for (const double side : {-1.0, 1.0}) {
+      EXPECT_EQ(map.visibility({-0.4 + side * (0.5 - texel), 0, z}), 0);
+      EXPECT_EQ(map.visibility({-0.4 + side * (0.5 + texel), 0, z}), 1);
+    }
+  EXPECT_EQ(map.visibility({-0.4, 5, 0}), 1);  // above the cube
+}
+
+// A surface must not shadow itself where the light meets it: default bias, flat and round, filtered.
+TEST(ShadowMap, LitSidesDoNotShadowThemselves) {
+  Stage stage;
+  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
+  stage.scene.materials[Stage::kBall].opacity = 1;
+  stage.scene.meshes[Stage::kBall] = talisman::tests::sphere_mesh(24, 48, 0.5);
+  const layers::SceneFrame frame = stage.scene.at(0);
+  for (const int light : {Stage::kSpot, Stage::kSun})
+    for (const int part : {Stage::kCube, Stage::kBall}) {
+      const std::vector<int> self{part};
+      layers::ShadowMapOptions options;
+      options.resolution_px = 256;
+      const ShadowMap map = make_shadow_map(frame, light, self, options);
+      const layers::Mesh& mesh = stage.scene.meshes[part];
+      const std::vector<dvec3> world = layers::world_positions(frame, stage.scene.parts[part]);
+      int facing = 0;
+      for (std::size_t i = 0; i < world.size(); ++i) {
+        const dvec3 to_light = light == Stage::kSun ? -frame.lights[light].direction
+                                                    : glm::normalize(frame.lights[light].position - world[i]);
+        if (glm::dot(dvec3(mesh.normals[i]), to_light) < 0.2) continue;
+        ++facing;
+        EXPECT_EQ(map.visibility(world[i]), 1) << "part " << part << " vertex " << i << " light " << light;
+      }
+      EXPECT_GE(facing, 8);
+    }
+}
+
+// A wall that fills the whole map: everything behind is dark, everything before it lit.
+TEST(ShadowMap, CasterThatFillsTheMap) {
+  Stage stage;
+  stage.scene.nodes[Stage::kCube].local.scale = {100, 0.01, 100};
+  const std::vector<int> wall{Stage::kCube};
+  for (const int light : {Stage::kSpot, Stage::kSun}) {
+    layers::ShadowMapOptions options;  // a map of 100 m: with fewer texels the bias is larger than the gap
+    options.resolution_px = 1024;
+    const ShadowMap map = make_shadow_map(stage.scene.at(0), light, wall, options);
+    for (double x = -0.5; x < 0.6; x += 0.1) {
+      EXPECT_EQ(map.visibility({x, 0.2, x}), 0) << light;
+      EXPECT_EQ(map.visibility({x, 1.5, x}), 1) << light;
+    }
+  }
+}
+
+// A caster outside the spot's cone: the map is there, and says nothing.
+TEST(ShadowMap, CasterThatMissesTheMap) {
+  Stage stage;
+  stage.scene.lights[Stage::kSpot].direction = {0, 1, 0};
+  const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSpot, kCasters);
+  EXPECT_EQ(map.polygons_drawn(), 0);
+  for (double x = -2; x < 2; x += 0.25) EXPECT_EQ(map.visibility({x, 5, x}), 1);
+  EXPECT_EQ(map.visibility({0, 0, 0}), 1);  // behind the light
+}
+
+TEST(ShadowMap, NothingToDrawIsLitEverywhere) {
+  Stage stage;
+  const layers::SceneFrame frame = stage.scene.at(0);
+  layers::ShadowMapOptions none;
+  none.resolution_px = 0;
+  EXPECT_TRUE(make_shadow_map(frame, Stage::kSun, {}).empty());
+  EXPECT_TRUE(make_shadow_map(frame, Stage::kSpot, {}).empty());
+  EXPECT_TRUE(make_shadow_map(frame, Stage::kSun, kCasters, none).empty());
+  EXPECT_TRUE(make_shadow_map(frame, 0, kCasters).empty());  // ambient
+  layers::SceneFrame broken = frame;
+  broken.lights[Stage::kSun].direction.x = std::nan("");
+  broken.lights[Stage::kSpot].position.y = HUGE_VAL;
+  EXPECT_TRUE(make_shadow_map(broken, Stage::kSun, kCasters).empty());
+  EXPECT_TRUE(make_shadow_map(broken, Stage::kSpot, kCasters).empty());
+  EXPECT_EQ(ShadowMap().visibility({1, 2, 3}), 1);
+  EXPECT_EQ(ShadowMap().bytes(), 0);
+}
+
+// One and two texels, a light at a vertex, casters that are not numbers or all in one place, places that are
+// not numbers: always a share between 0 and 1.
+TEST(ShadowMap, HardInputsStayInRange) {
+  Stage stage;
+  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
+  stage.scene.lights[Stage::kSpot].position =
+      layers::world_positions(stage.scene.at(0), stage.scene.parts[Stage::kCube])[0];
+  Stage broken = stage;
+  broken.scene.meshes[Stage::kCube].positions[3].x = std::nanf("");
+  Stage collapsed = stage;
+  for (vec3& p : collapsed.scene.meshes[Stage::kCube].positions) p = {1, 1, 1};
+  const std::vector<int> cube{Stage::kCube};
+  const double inf = HUGE_VAL, nan = std::nan("");
+  for (Stage* s : {&stage, &broken, &collapsed})
+    for (const int light : {Stage::kSpot, Stage::kSun})
+      for (const int resolution : {1, 2, 33}) {
+        layers::ShadowMapOptions options;
+        options.resolution_px = resolution;
+        options.pcf_radius = 8;
+        const ShadowMap map = make_shadow_map(s->scene.at(0), light, cube, options);
+        for (const dvec3& p : {dvec3(0), dvec3(1e30), dvec3(-1e-30), dvec3(nan, 0, 0), dvec3(inf, -inf, 1),
+                               s->scene.lights[Stage::kSpot].position}) {
+          const float v = map.visibility(p);
+          EXPECT_TRUE(v >= 0 && v <= 1) << v;
+        }
+        EXPECT_EQ(map.visibility({nan, nan, nan}), 1);
+      }
+}
+
+// Half transparent is the border: below it a part casts nothing.
+TEST(ShadowMap, FaintCastersCastNothing) {
+  Stage stage;
+  const std::vector<int> ball{Stage::kBall};
+  stage.scene.materials[Stage::kBall].opacity = 0.5f;
+  EXPECT_FALSE(make_shadow_map(stage.scene.at(0), Stage::kSun, ball).empty());
+  stage.scene.materials[Stage::kBall].opacity = 0.49f;
+  EXPECT_TRUE(make_shadow_map(stage.scene.at(0), Stage::kSun, ball).empty());
+}
+
+TEST(ShadowMap, ThreadsDoNotChangeItsBits) {
+  Stage stage;
+  const auto draw = [&] { return make_shadow_map(stage.scene.at(0), Stage::kSpot, kCasters); };
+  const ShadowMap expected = draw();
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
+  const ShadowMap single = draw();
+  ASSERT_EQ(single.faces().size(), 1u);
+  EXPECT_EQ(std::memcmp(single.faces()[0].depths.data(), expected.faces()[0].depths.data(),
+                        expected.faces()[0].depths.size() * sizeof(float)),
+            0);
+}
+
+// A wider filter gives more steps between dark and lit, and the same darkness inside.
+TEST(ShadowMap, FilterSoftensTheEdge) {
+  Stage stage;
+  stage.scene.lights[Stage::kSun].direction = {0, -1, 0};
+  const std::vector<int> cube{Stage::kCube};
+  std::size_t steps_before = 0;
+  for (const int radius : {0, 1, 3}) {
+    layers::ShadowMapOptions options;
+    options.resolution_px = 64;
+    options.pcf_radius = radius;
+    const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSun, cube, options);
+    std::vector<float> values;
+    for (double x = 0; x < 0.3; x += 0.001) values.push_back(map.visibility({x, 0, 0}));
+    EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
+    std::erase_if(values, [](float v) { return v <= 0 || v >= 1; });
+    values.erase(std::unique(values.begin(), values.end()), values.end());
+    EXPECT_TRUE(radius == 0 ? values.empty() : values.size() > steps_before);
+    steps_before = values.size();
+    EXPECT_EQ(map.visibility({-0.4, 0, 0}), 0);
+  }
+}
+
+}  // namespace
+}  // namespace talisman::chunker::tests
