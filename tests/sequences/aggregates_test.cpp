@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/inspect_order.h"
+#include "sequences/layer_pairs.h"
 #include "sequences/options.h"
 #include "sequences/results.h"
 #include "tests/sequences/temporary_folder.h"
@@ -59,8 +60,8 @@ Settings settings_of(const Sequence& sequence, Policy policy = Policy::Threshold
 }
 
 /// A run, frame by frame.
-struct Run {
-  Run(const Sequence& s, const Settings& settings, bool draw = false)
+struct Playback {
+  Playback(const Sequence& s, const Settings& settings, bool draw = false)
       : sequence(s), pipeline(*sequence.scene, sequence.layers, settings), state(pipeline) {
     if (draw) prepared.emplace(*sequence.scene);
   }
@@ -93,7 +94,7 @@ int first_meeting(const Sequence& s) {
 
 TEST(Aggregates, CrossingBodiesShareASpriteWhileTheyMeet) {
   const Sequence s = crossing();
-  Run run(s, settings_of(s));
+  Playback run(s, settings_of(s));
   const int first = first_meeting(s);
   ASSERT_GT(first, 0);
   int frames_since_meeting = 100, splits = 0;
@@ -123,7 +124,7 @@ TEST(Aggregates, CrossingBodiesShareASpriteWhileTheyMeet) {
 TEST(Aggregates, OldSpritesOfMembersServeAgainAfterTheSplit) {
   // Wall and camera rest: whatever was merged meanwhile, the wall's own sprite of frame 0 stays right.
   const Sequence s = crossing();
-  Run run(s, settings_of(s), true);
+  Playback run(s, settings_of(s), true);
   int wall_renders = 0;
   for (const FrameReport& report : run.all(40))
     wall_renders += report.plan.decisions[kWall].action == Action::Rerender;
@@ -132,7 +133,7 @@ TEST(Aggregates, OldSpritesOfMembersServeAgainAfterTheSplit) {
 
 TEST(Aggregates, TheSameLayersHaveTheSameAggregateAgain) {
   const Sequence s = crossing();
-  Run run(s, settings_of(s));
+  Playback run(s, settings_of(s));
   int mergers = 0;
   for (const FrameReport& report : run.all(40)) mergers += !report.order.mergers.empty();
   EXPECT_GT(mergers, 8);  // two passages
@@ -142,7 +143,7 @@ TEST(Aggregates, TheSameLayersHaveTheSameAggregateAgain) {
 
 TEST(Aggregates, SpriteIsGivenUpWhenItsAggregateIsGoneForLong) {
   const Sequence s = crossing();
-  Run run(s, settings_of(s), true);
+  Playback run(s, settings_of(s), true);
   int last_merged = -1;
   for (const FrameReport& report : run.all(40))
     if (!report.order.mergers.empty()) last_merged = report.frame;
@@ -159,7 +160,7 @@ TEST(Aggregates, EveryPolicyDecidesTheSameWithAndWithoutPixels) {
   for (const Policy policy : {Policy::Reference, Policy::Hold, Policy::Interpolate, Policy::Threshold,
                               Policy::Budget, Policy::Lookahead, Policy::Oracle}) {
     SCOPED_TRACE(std::string(regulator::name(policy)));
-    Run planned(s, settings_of(s, policy)), drawn(s, settings_of(s, policy), true);
+    Playback planned(s, settings_of(s, policy)), drawn(s, settings_of(s, policy), true);
     int merged_frames = 0;
     for (int frame = 0; frame < 24; ++frame) {
       const FrameReport a = planned.next(), b = drawn.next();
@@ -176,10 +177,10 @@ TEST(Aggregates, EveryPolicyDecidesTheSameWithAndWithoutPixels) {
 TEST(Aggregates, FrameDrawnAloneHasTheBytesOfTheWholeRun) {
   // What --frames and --resume rely on: frames before it are only planned.
   const Sequence s = crossing();
-  Run whole(s, settings_of(s), true);
+  Playback whole(s, settings_of(s), true);
   const auto reports = whole.all(13);
   for (const int wanted : {first_meeting(s), 12}) {
-    Run late(s, settings_of(s));
+    Playback late(s, settings_of(s));
     late.all(wanted);
     late.prepared.emplace(*s.scene);
     EXPECT_EQ(hash_of(late.next().picture), hash_of(reports[wanted].picture)) << wanted;
@@ -188,7 +189,7 @@ TEST(Aggregates, FrameDrawnAloneHasTheBytesOfTheWholeRun) {
 
 TEST(Aggregates, DirectNeitherSortsNorMerges) {
   const Sequence s = crossing();
-  Run run(s, settings_of(s, Policy::Direct));
+  Playback run(s, settings_of(s, Policy::Direct));
   for (const FrameReport& report : run.all(10)) {
     EXPECT_FALSE(report.order.sorted);
     EXPECT_EQ(report.plan.decisions.size(), 3u);
@@ -198,7 +199,7 @@ TEST(Aggregates, DirectNeitherSortsNorMerges) {
 TEST(Aggregates, CyclesThatAreKeptAreNeverMerged) {
   const Sequence s = crossing("cycles: keep\n");
   EXPECT_EQ(s.cycles, Cycles::Keep);
-  Run run(s, settings_of(s));
+  Playback run(s, settings_of(s));
   for (const FrameReport& report : run.all(12)) {
     EXPECT_TRUE(report.order.mergers.empty());
     EXPECT_EQ(report.shown.size(), 3u);
@@ -207,7 +208,7 @@ TEST(Aggregates, CyclesThatAreKeptAreNeverMerged) {
 
 TEST(Aggregates, AuthorsOrderReplacesGeometry) {
   const Sequence s = crossing("order: [{behind: ball, front: wal?}]\n");
-  Run run(s, settings_of(s));
+  Playback run(s, settings_of(s));
   for (const FrameReport& report : run.all(12)) {
     EXPECT_TRUE(report.order.mergers.empty());
     const auto& order = report.order.back_to_front;
@@ -220,7 +221,7 @@ TEST(Aggregates, LayersThatTheirGroupsOrderAreNotSorted) {
   Sequence s = all;
   s.layers.layers[kWall].group = layers::OrderGroup::Foreground;
   s.layers.layers[kBystander].group = layers::OrderGroup::Background;
-  Run run(s, settings_of(s));
+  Playback run(s, settings_of(s));
   for (const FrameReport& report : run.all(8)) {
     EXPECT_FALSE(report.order.sorted);
     EXPECT_EQ(report.order.counters.queries, 0);
@@ -235,7 +236,7 @@ TEST(Aggregates, LayersOutOfViewTakeNoPart) {
   for (layers::Node& node : scene.nodes)
     if (node.name == "bystander") node.local.translation = {0, 0, 50};  // behind the camera
   s.scene = std::make_shared<const layers::Scene>(scene);
-  Run run(s, settings_of(s));
+  Playback run(s, settings_of(s));
   const FrameReport report = run.next();
   EXPECT_EQ(report.order.back_to_front.size(), 2u);
   EXPECT_EQ(report.order.counters.layers, 2);
@@ -244,7 +245,7 @@ TEST(Aggregates, LayersOutOfViewTakeNoPart) {
 
 TEST(Aggregates, ResultsNameThem) {
   const Sequence s = crossing();
-  Run run(s, settings_of(s), true);
+  Playback run(s, settings_of(s), true);
   Summary summary = start_summary(run.pipeline, "crossing");
   int lines = 0, merged_frames = 0;
   for (int frame = 0; frame < 20; ++frame) {
