@@ -65,7 +65,8 @@ std::string why_merged(const Pipeline& pipeline, const MergedComponent& componen
     case MergedComponent::Reason::Interpenetration:
       return names_of(pipeline, component.cycle, " and ") + " occlude each other";
     case MergedComponent::Reason::Cycle:
-      return "they occlude each other in a cycle (" + names_of(pipeline, component.cycle, " behind ") + ")";
+      return "they occlude each other in a cycle (" + names_of(pipeline, component.cycle, " behind ") +
+             " behind " + pipeline.layers.layers[component.cycle.front()].name + ")";
     case MergedComponent::Reason::Held:
       return "their cycle ended " + std::to_string(component.absent_frames) + " frames ago";
   }

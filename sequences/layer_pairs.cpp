@@ -55,7 +55,7 @@ void check(const LayerPairEntry& entry, const Layer& behind, const Layer& front,
 
 std::vector<LayerPairEntry> read_layer_pairs(const YamlValue& list) {
   std::vector<LayerPairEntry> entries;
-  for (const YamlValue& item : list.items()) {
+  for (const YamlValue& item : list.items(0)) {
     YamlMap map = item.map();
     LayerPairEntry entry{map.need("behind").text(), map.need("front").text(), item.file(), item.line()};
     map.finish();
