@@ -382,12 +382,12 @@ std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, con
 }
 
 std::vector<dmat4> world_from_bodies(const SceneFrame& frame, const LayerBound& bound) {
-  const auto frame_of = [&frame](const LayerBound& body) {
-    return axes_of(frame, body.node >= 0 ? body.node : body.axes_node);
-  };
+  if (bound.bodies.empty()) return {axes_of(frame, bound.node >= 0 ? bound.node : bound.axes_node)};
   std::vector<dmat4> frames;
-  if (bound.bodies.empty()) frames.push_back(frame_of(bound));
-  for (const LayerBound& body : bound.bodies) frames.push_back(frame_of(body));
+  for (const LayerBound& body : bound.bodies) {
+    const auto of_body = world_from_bodies(frame, body);
+    frames.insert(frames.end(), of_body.begin(), of_body.end());
+  }
   return frames;
 }
 

@@ -103,8 +103,8 @@ TEST(ColorWarp, WithoutItTheSameAccuracyCostsRenders) {
   const auto without = stage.run(Policy::Threshold);
   EXPECT_GT(renders(without), 4);
   EXPECT_LT(renders(without), kFrames);
-  EXPECT_THAT(without[10].plan.decisions[0].reason, HasSubstr("photometric"));
-  EXPECT_EQ(without[10].plan.decisions[0].shown_color, dvec3(1, 1, 1));
+  for (const FrameReport& report : without)
+    EXPECT_EQ(report.plan.decisions[0].shown_color, dvec3(1, 1, 1)) << report.frame;
   stage.settings.regulator.photometric = 0;
   const auto blind = stage.run(Policy::Threshold);
   EXPECT_EQ(renders(blind), 1);
