@@ -120,8 +120,11 @@ struct Ball {
 
 Ball ball_around(std::span<const dvec3> points) {
   Ball ball;
-  for (const dvec3& p : points) ball.middle += p / static_cast<double>(points.size());
-  for (const dvec3& p : points) ball.radius = std::max(ball.radius, glm::distance(p, ball.middle));
+  for (const dvec3& p : points) ball.middle += p;
+  ball.middle *= 1 / static_cast<double>(points.size());
+  double squared = 0;
+  for (const dvec3& p : points) squared = std::max(squared, dot(p - ball.middle, p - ball.middle));
+  ball.radius = std::sqrt(squared);
   return ball;
 }
 

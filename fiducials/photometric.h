@@ -40,7 +40,7 @@ struct PhotometricOptions {
 };
 
 /// Not computed, with the reason, where the bound has no surface, or a state has no points. Cost: nothing
-/// where not computed; else O(points + lights · bodies), about 0.5 µs for a box under two lights.
+/// where not computed; else O(points + lights · bodies), about 0.9 µs for a box under three lights.
 Photometric photometric_of(const layers::LayerState& then, const layers::LayerState& now,
                            const layers::LayerBound& bound, const PhotometricOptions& options = {});
 

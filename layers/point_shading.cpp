@@ -14,11 +14,12 @@ namespace {
 
 constexpr std::size_t kMostTexelsRead = 65536;
 
-bool is_finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+/// One test for all three: what is not finite leaves no finite difference from itself.
+bool is_finite(const dvec3& v) { return (v.x - v.x) + (v.y - v.y) + (v.z - v.z) == 0; }
 
 dvec3 unit_or_zero(const dvec3& v) {
   const double length = glm::length(v);
-  return length > 0 && std::isfinite(length) ? v / length : dvec3(0.0);
+  return length > 0 && std::isfinite(length) ? v * (1 / length) : dvec3(0.0);
 }
 
 /// sRGB byte to linear, 0 … 1.

@@ -394,8 +394,8 @@ std::vector<dmat4> world_from_bodies(const SceneFrame& frame, const LayerBound& 
   if (bound.bodies.empty()) return {axes_of(frame, bound.node >= 0 ? bound.node : bound.axes_node)};
   std::vector<dmat4> frames;
   for (const LayerBound& body : bound.bodies) {
-    const std::vector<dmat4> inner = world_from_bodies(frame, body);
-    frames.insert(frames.end(), inner.begin(), inner.end());
+    const auto of_body = world_from_bodies(frame, body);
+    frames.insert(frames.end(), of_body.begin(), of_body.end());
   }
   return frames;
 }

@@ -9,7 +9,9 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "sequences/options.h"
 #include "sequences/results.h"
+#include "tests/sequences/temporary_folder.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {
@@ -103,8 +105,8 @@ TEST(ColorWarp, WithoutItTheSameAccuracyCostsRenders) {
   const auto without = stage.run(Policy::Threshold);
   EXPECT_GT(renders(without), 4);
   EXPECT_LT(renders(without), kFrames);
-  EXPECT_THAT(without[10].plan.decisions[0].reason, HasSubstr("photometric"));
-  EXPECT_EQ(without[10].plan.decisions[0].shown_color, dvec3(1, 1, 1));
+  for (const FrameReport& report : without)
+    EXPECT_EQ(report.plan.decisions[0].shown_color, dvec3(1, 1, 1)) << report.frame;
   stage.settings.regulator.photometric = 0;
   const auto blind = stage.run(Policy::Threshold);
   EXPECT_EQ(renders(blind), 1);
@@ -186,6 +188,30 @@ TEST(ColorWarp, DisplayedColourErrorNeverExceedsTheThreshold) {
           EXPECT_LE(report.assessments[0].fiducials.photometric.color, threshold);
         }
   }
+}
+
+TEST(Resolve, OptionsOfLightAndFacesOverrideTheSequence) {
+  Sequence sequence;
+  sequence.frames = 1;
+  sequence.regulator.photometric = 0.3;
+  CommandLine line;
+  EXPECT_EQ(resolve(line, sequence, true).settings.regulator.photometric, 0.3);
+  line.photometric = 0.1;
+  line.light_angle_deg = 180;
+  line.turned_px = 8;
+  line.color_warp = "off";
+  const regulator::RegulatorOptions options = resolve(line, sequence, true).settings.regulator;
+  EXPECT_EQ(options.photometric, 0.1);
+  EXPECT_DOUBLE_EQ(options.light_angle_rad, 2 * std::acos(0.0));
+  EXPECT_EQ(options.turned_px, 8);
+  EXPECT_FALSE(options.color_warp);
+  line.color_warp = "maybe";
+  EXPECT_THAT(tests::message_of([&] { resolve(line, sequence, true); }),
+              HasSubstr("--color-warp is 'maybe'"));
+  line.color_warp = "on";
+  line.light_angle_deg = 181;
+  EXPECT_THAT(tests::message_of([&] { resolve(line, sequence, true); }),
+              HasSubstr("light_angle_rad is 3.15"));
 }
 
 TEST(TurnedFaces, AreRegulatedOnRequest) {

@@ -99,6 +99,19 @@ TEST(LoadSequence, PoliciesThatLookAheadOrKeepABudgetAreNamedWithTheirNumbers) {
   EXPECT_EQ(options.lookahead_frames, 7);
 }
 
+TEST(LoadSequence, LightAndFacesAreRegulatedAsTheFileSays) {
+  const TemporaryFolder folder;
+  std::vector<std::string> lines = kLines;
+  lines[17] = "regulator: {photometric: 0.2, light_angle_deg: 90, color_warp: false, turned_px: 12}";
+  const regulator::RegulatorOptions options = load(folder, lines).regulator;
+  EXPECT_EQ(options.photometric, 0.2);
+  EXPECT_DOUBLE_EQ(options.light_angle_rad, std::acos(0.0));
+  EXPECT_FALSE(options.color_warp);
+  EXPECT_EQ(options.turned_px, 12);
+  lines[17] = "regulator: {light_angle_deg: 181}";
+  EXPECT_THAT(message_of([&] { load(folder, lines); }), HasSubstr(":18: regulator.light_angle_deg is '181'"));
+}
+
 TEST(LoadSequence, ModelsStandWhereTheFileSays) {
   const TemporaryFolder folder;
   const Sequence s = load(folder);
