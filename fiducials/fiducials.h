@@ -3,7 +3,9 @@
 
 /// How wrong is the old sprite, warped, for the frame now? [LS97 5]
 ///
-/// Geometric:  F = maxᵢ ‖pᵢ - W p̂ᵢ‖, pixels, best 0 [LS97 5.1].
+/// Geometric:  F = maxᵢ ‖pᵢ - W p̂ᵢ‖, pixels, best 0 [LS97 5.1]; where a sprite holds shadows, highlights or
+///             reflections, plus how far those have run over the surface (fiducials/shade.h): the triangle
+///             inequality makes the sum a bound of their displacement on the display.
 /// Sampling:   singular values of the Jacobian of the map from sprite to display, [LS97 5.3]: how many
 /// display pixels one
 ///             texel is stretched or squeezed to; no unit, best 1.
@@ -47,10 +49,21 @@ struct Visibility {
   dvec2 where_px{0, 0};
 };
 
+/// How far shadows, highlights and mirrored pictures have run over a surface since it was drawn
+/// (fiducials/shade.h). Already added to Geometric::px of the same report.
+struct ShadeMotion {
+  bool computed = false;
+  std::string_view why_not = "";
+  double px = 0;  ///< best 0
+  dvec2 where_px{0, 0};
+  int trace = -1;  ///< index into LayerState::traces of the worst; -1: none moves
+};
+
 struct Report {
   Geometric geometric;
   Sampling sampling;
   Visibility visibility;
+  ShadeMotion shade;
 };
 
 /// Singular values (largest first) of the 2×2 matrix | a b ; c d |, closed form [Blinn 96]:

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 
+#include "layers/scene.h"
+#include "layers/shading.h"
+
 namespace talisman::layers {
 
 namespace {
@@ -35,21 +38,107 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
     case Effect::Skinning:
       if (part.skin >= 0) return "part '" + part.name + "' has a skin";
       break;
-    case Effect::LayerResolution:
+    default:
       break;  // asked for by layers, not by parts
   }
   return {};
 }
 
+std::string quoted(const char* what, const std::string& name) {
+  return std::string(what) + " '" + name + "'";
+}
+
+std::string light_of(const Scene& scene, int light) {
+  const std::string& name = scene.lights[light].name;
+  return name.empty() ? "light " + std::to_string(light) : quoted("light", name);
+}
+
+/// "layer 'floor/specular' holds the highlights of 'floor'"
+std::string shade_call(const Layer& layer, LayerKind kind, const char* holds) {
+  return layer.kind == kind ? quoted("layer", layer.name) + " holds " + holds : "";
+}
+
 std::string call_of(const Scene& scene, const Layer& layer, Effect effect) {
-  if (effect == Effect::LayerResolution)
-    return layer.preferences.resolution_scale != 1 ? "layer '" + layer.name + "' has its own resolution" : "";
+  switch (effect) {
+    case Effect::LayerResolution:
+      return layer.preferences.resolution_scale != 1 ? quoted("layer", layer.name) + " has its own resolution"
+                                                     : "";
+    case Effect::ShadowMap:
+      return layer.holds.shadows ? "shadows fall on " + quoted("layer", layer.name) : "";
+    case Effect::ShadowLayer:
+      return layer.kind == LayerKind::Shadow
+                 ? shade_call(layer, LayerKind::Shadow, "the shadows of ") + light_of(scene, layer.light)
+                 : "";
+    case Effect::SpecularLayer:
+      return shade_call(layer, LayerKind::Specular, "the highlights of its base");
+    case Effect::ReflectionMap:
+      return layer.holds.reflection ? quoted("layer", layer.name) + " mirrors " +
+                                          std::to_string(layer.reflected.size()) + " layers"
+                                    : "";
+    case Effect::ReflectionLayer:
+      return shade_call(layer, LayerKind::Reflection, "the mirrored picture");
+    case Effect::TextureLayers:
+      return shade_call(layer, LayerKind::Texture, "the second texture of its base");
+    default:
+      break;
+  }
   for (const int part : layer.parts)
     if (std::string why = call_of(scene, scene.parts[part], effect); !why.empty()) return why;
   return {};
 }
 
-std::string why_not(const Scene& scene, Effect effect) {
+// --- Why not ---
+
+bool any_layer(std::span<const Layer> layers, bool (*is_so)(const Layer&)) {
+  return std::any_of(layers.begin(), layers.end(), is_so);
+}
+
+bool any_layer_part(const Scene& scene, std::span<const Layer> layers,
+                    bool (*property)(const Scene&, const Part&)) {
+  return std::any_of(layers.begin(), layers.end(),
+                     [&](const Layer& layer) { return any_part(scene, layer, property); });
+}
+
+std::string why_no_shadow_map(const Scene& scene, std::span<const Layer> layers) {
+  const bool casts = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                 [](const Light& light) { return light.casts_shadow; });
+  if (scene.lights.empty()) return "the scene has no light";
+  if (!casts) return "no light casts shadows";
+  if (!any_layer_part(scene, layers, is_lit)) return "no part is lit, so none receives a shadow";
+  return "no part casts a shadow on another layer";
+}
+
+std::string why_no_reflection(const Scene& scene, std::span<const Layer> layers) {
+  for (const Layer& layer : layers)
+    if (layer.base < 0 && any_part(scene, layer, is_reflecting)) {
+      const std::string defect = reflection_defect(scene, layer);
+      return quoted("layer", layer.name) + ": " + (defect.empty() ? "nothing else is there" : defect);
+    }
+  return "no material has reflectivity > 0";
+}
+
+/// Of an effect of shade layers: nothing calls for the term, or no layer factors it.
+std::string why_no_shade_layer(const Scene& scene, std::span<const Layer> layers, Effect effect) {
+  switch (effect) {
+    case Effect::ShadowLayer:
+      return any_layer(layers, [](const Layer& l) { return l.holds.shadows; })
+                 ? "no layer factors its shadows: their sprites hold them"
+                 : why_no_shadow_map(scene, layers);
+    case Effect::SpecularLayer:
+      if (!any_layer_part(scene, layers, is_highlighted)) return "no lit material has specular > 0";
+      return "no layer with highlights factors them: its sprite holds them";
+    case Effect::ReflectionLayer:
+      return any_layer(layers, [](const Layer& l) { return l.holds.reflection; })
+                 ? "no layer factors its reflection: its sprite holds it"
+                 : why_no_reflection(scene, layers);
+    default:
+      return any_layer_part(scene, layers, has_second_texture)
+                 ? "no layer factors its second texture: its sprite holds it"
+                 : "no material has a second texture";
+  }
+}
+
+std::string why_not(const Scene& scene, std::span<const Layer> layers, Effect effect) {
   switch (effect) {
     case Effect::Texture:
     case Effect::MipFilter:
@@ -64,8 +153,29 @@ std::string why_not(const Scene& scene, Effect effect) {
       return "no part has a skin";
     case Effect::LayerResolution:
       return "every layer has the display's resolution";
+    case Effect::ShadowMap:
+      return why_no_shadow_map(scene, layers);
+    case Effect::ReflectionMap:
+      return why_no_reflection(scene, layers);
+    default:
+      return why_no_shade_layer(scene, layers, effect);
   }
-  return {};
+}
+
+/// "light 'spot': drawn again when light or casters move; light 'sun': static, drawn once"
+std::string why_of_shadow_maps(const Scene& scene, std::span<const Layer> layers) {
+  std::string why;
+  for (const ShadowMapUse& use : shadow_maps_called_for(scene, layers))
+    why += (why.empty() ? "" : "; ") + use.why;
+  return why;
+}
+
+bool moves(const Scene& scene, const Part& part) {
+  if (is_animated(scene, part.node)) return true;
+  if (part.skin < 0) return false;
+  const Skin& skin = scene.skins[part.skin];
+  return std::any_of(skin.joints.begin(), skin.joints.end(),
+                     [&](int joint) { return is_animated(scene, joint); });
 }
 
 }  // namespace
@@ -86,14 +196,42 @@ std::string_view name(Effect effect) {
       return "skinning";
     case Effect::LayerResolution:
       return "layer_resolution";
+    case Effect::ShadowMap:
+      return "shadow_map";
+    case Effect::ShadowLayer:
+      return "shadow_layer";
+    case Effect::SpecularLayer:
+      return "specular_layer";
+    case Effect::ReflectionMap:
+      return "reflection_map";
+    case Effect::ReflectionLayer:
+      return "reflection_layer";
+    case Effect::TextureLayers:
+      return "texture_layers";
   }
   return "?";
+}
+
+std::vector<ShadowMapUse> shadow_maps_called_for(const Scene& scene, std::span<const Layer> layers) {
+  std::vector<ShadowMapUse> uses;
+  const std::vector<int> casting = casting_parts(scene, layers);
+  const bool casters_move =
+      std::any_of(casting.begin(), casting.end(), [&](int part) { return moves(scene, scene.parts[part]); });
+  for (std::size_t i = 0; i < scene.lights.size() && !casting.empty(); ++i) {
+    const Light& light = scene.lights[i];
+    if (!light.casts_shadow) continue;
+    ShadowMapUse use{static_cast<int>(i), false, light_of(scene, static_cast<int>(i))};
+    use.drawn_once = !casters_move && (light.node < 0 || !is_animated(scene, light.node));
+    use.why += use.drawn_once ? ": static, drawn once" : ": drawn again when light or casters move";
+    uses.push_back(std::move(use));
+  }
+  return uses;
 }
 
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers) {
   std::vector<EffectCall> table;
   for (const Effect effect : kAllEffects) {
-    EffectCall call{effect, false, why_not(scene, effect), {}};
+    EffectCall call{effect, false, {}, {}};
     for (const Layer& layer : layers) {
       std::string why = call_of(scene, layer, effect);
       if (why.empty()) continue;
@@ -101,6 +239,8 @@ std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const L
       call.called = true;
       call.layers.push_back(layer.id);
     }
+    if (!call.called) call.why = why_not(scene, layers, effect);
+    if (call.called && effect == Effect::ShadowMap) call.why = why_of_shadow_maps(scene, layers);
     table.push_back(std::move(call));
   }
   return table;

@@ -25,10 +25,18 @@ enum class Effect {
   Translucency,       ///< opacity < 1 or a texture with alpha
   Skinning,           ///< some drawn part has a skin
   LayerResolution,    ///< some layer asks for a resolution other than the display's
+  ShadowMap,          ///< some light casts shadows, something casts and something receives: a pass per light
+  ShadowLayer,        ///< … and some layer factors them: black sprites that darken their base
+  SpecularLayer,      ///< some layer factors its highlights
+  ReflectionMap,    ///< a flat layer mirrors others: a pass with the mirrored camera for each of its renders
+  ReflectionLayer,  ///< … and factors the mirrored picture
+  TextureLayers,    ///< some layer factors the second texture of its material
 };
-inline constexpr std::array kAllEffects = {Effect::Texture,           Effect::MipFilter,    Effect::Lighting,
-                                           Effect::SpecularHighlight, Effect::Translucency, Effect::Skinning,
-                                           Effect::LayerResolution};
+inline constexpr std::array kAllEffects = {
+    Effect::Texture,      Effect::MipFilter,     Effect::Lighting,        Effect::SpecularHighlight,
+    Effect::Translucency, Effect::Skinning,      Effect::LayerResolution, Effect::ShadowMap,
+    Effect::ShadowLayer,  Effect::SpecularLayer, Effect::ReflectionMap,   Effect::ReflectionLayer,
+    Effect::TextureLayers};
 std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
 
 struct EffectCall {
@@ -37,6 +45,16 @@ struct EffectCall {
   std::string why;          ///< "material 'hull' has texture 'gl-14.tga'" or "no material has a texture"
   std::vector<int> layers;  ///< ids of the layers that use it, ascending
 };
+
+/// How a shadow map comes to be: does its light, or anything that casts into it, move?
+struct ShadowMapUse {
+  int light = -1;
+  bool drawn_once = false;  ///< neither moves
+  std::string why;          ///< "light 'sun': static, drawn once"
+};
+
+/// One entry per light whose shadow map some layer looks up. Cost: O(casting parts · depth).
+std::vector<ShadowMapUse> shadow_maps_called_for(const Scene& scene, std::span<const Layer> layers);
 
 /// One entry per effect, in the order of kAllEffects. Parts that no layer takes do not count. Cost: O(parts).
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers);
