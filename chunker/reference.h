@@ -15,7 +15,7 @@ namespace talisman::chunker::reference {
 /// encode).
 Sprite render(const PreparedScene& prepared, const layers::SceneFrame& frame, std::span<const int> parts,
               layers::ivec2 display_px, const layers::SpritePlacement& placement,
-              const RenderOptions& options = {});
+              const RenderOptions& options = {}, const ShadeInputs& inputs = {});
 
 /// Per-pixel loop over all sprites with the same arithmetic as the fast path, without bands, runs or SIMD:
 /// equal byte for byte.

@@ -75,7 +75,7 @@ Texel texel_at(const DrawList& list, int x, int y) {
 
 Sprite render(const PreparedScene& prepared, const layers::SceneFrame& frame, std::span<const int> parts,
               layers::ivec2 display_px, const layers::SpritePlacement& placement,
-              const RenderOptions& options) {
+              const RenderOptions& options, const ShadeInputs& /*inputs*/) {
   DrawList list;
   build_draw_list(prepared, frame, parts, display_px, placement, options, list);
   Sprite sprite(list.size_px);

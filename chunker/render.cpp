@@ -46,6 +46,8 @@ RenderCounters& RenderCounters::operator+=(const RenderCounters& o) {
   fragments_merged += o.fragments_merged;
   chunk_subdivisions += o.chunk_subdivisions;
   texture_samples += o.texture_samples;
+  shadow_lookups += o.shadow_lookups;
+  reflection_lookups += o.reflection_lookups;
   return *this;
 }
 
@@ -77,7 +79,8 @@ std::int64_t PreparedScene::texture_bytes() const {
 
 RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& frame,
                     std::span<const int> parts, layers::ivec2 display_px,
-                    const layers::SpritePlacement& placement, const RenderOptions& options) {
+                    const layers::SpritePlacement& placement, const RenderOptions& options,
+                    const ShadeInputs& /*inputs*/) {
   check_options(placement, options);
   DrawList list;
   build_draw_list(prepared, frame, parts, display_px, placement, options, list);

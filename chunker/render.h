@@ -32,11 +32,23 @@ namespace talisman::chunker {
 
 enum class Shading { Flat, Gouraud, Phong };
 
+/// How a texture is looked up: the nearest texel of level 0, four of them, or four in each of two levels of
+/// the pyramid. Cheaper ones alias where the texture is minified.
+enum class TextureFilter { Nearest, Bilinear, Trilinear };
+
 struct RenderOptions {
   /// Flat shades triangles, Gouraud vertices, Phong every covered pixel: the cost of lights goes with their
   /// number.
   Shading shading = Shading::Phong;
   bool mipmaps = true;  ///< trilinear; without them minified textures alias, and cost half as much
+  TextureFilter filter = TextureFilter::Trilinear;  ///< without mipmaps at most Bilinear
+  /// Most trilinear samples along the line of anisotropy, 1 … 16; 1: isotropic. More keeps slanted textures
+  /// sharp; every sample costs as much as the one before. Takes part only where `filter` is Trilinear.
+  int max_anisotropy = 1;
+  /// Samples of coverage per texel: 1, 4 or 16. Fewer need fewer fragments and leave edges in that many
+  /// steps. With 1 a texel is what its sample at (3/8, 3/8) sees; with 4 each of four samples, one per row
+  /// and column, stands for its row.
+  int samples = 16;
   /// ≥ 16; a chunk that needs more is drawn again in quarters. More memory (48 bytes each), fewer
   /// repetitions; the bytes do not change [A §1: size unpublished, assumed].
   int max_fragments_per_chunk = 4096;
@@ -62,6 +74,8 @@ struct RenderCounters {
   std::int64_t fragments_merged = 0;    ///< into one that was stored before
   std::int64_t chunk_subdivisions = 0;  ///< chunks, or quarters, that were cut into four
   std::int64_t texture_samples = 0;     ///< filtered look-ups, trilinear or bilinear
+  std::int64_t shadow_lookups = 0;      ///< filtered look-ups in shadow maps
+  std::int64_t reflection_lookups = 0;  ///< bilinear look-ups in a reflection
   RenderCounters& operator+=(const RenderCounters& o);
   bool operator==(const RenderCounters&) const = default;
 };
@@ -83,6 +97,35 @@ class PreparedScene {
   std::unique_ptr<Impl> impl_;
 };
 
+class ShadowMap;  // chunker/shadow_map.h
+
+/// Which part of the shading expression a sprite holds [LS97 2.3, appendix]; chunker/shade.h has the
+/// formulas. In every term the same surfaces are seen in the same samples, so the terms line up texel by
+/// texel.
+enum class ShadeTerm {
+  Full,        ///< all at once: B · Π s + Σ specular · v + reflectivity · reflection; alpha = coverage
+  Base,        ///< B: ambient, diffuse (of both textures) and emission; alpha = coverage
+  Shadow,      ///< black, alpha (1 - Π s) β
+  Specular,    ///< highlights alone, alpha 0: `over` adds them
+  Reflection,  ///< reflectivity · reflection, alpha 0
+  /// The base split by textures: (N·L) T₁, with emission and coverage, and (N·L) T₂ with alpha 0. Both leave
+  /// out Material::texture_blend, which the compositor applies as colour multipliers, without drawing again.
+  Texture1,
+  Texture2,
+};
+
+/// What one call draws, and what it looks up. What a term does not need is not looked at.
+struct ShadeInputs {
+  ShadeTerm term = ShadeTerm::Full;
+  /// By index of Scene::lights. Shorter, or null: that light casts no shadow. Used by Full, Shadow, Specular.
+  std::span<const ShadowMap* const> shadow_maps;
+  /// Index of the one light whose shadow or highlight is drawn; -1: of all. Used by Shadow and Specular.
+  int light = -1;
+  /// The scene as a mirrored camera sees it (chunker/mirror.h), null: none. Used by Full and Reflection.
+  const Sprite* reflection = nullptr;
+  layers::Affine2 reflection_from_screen;  ///< where it lies; the default: texel on pixel of the display
+};
+
 struct RenderResult {
   Sprite sprite;
   RenderCounters counters;
@@ -93,6 +136,7 @@ struct RenderResult {
 /// pairs) + O(covered pixels).
 RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& frame,
                     std::span<const int> parts, layers::ivec2 display_px,
-                    const layers::SpritePlacement& placement, const RenderOptions& options = {});
+                    const layers::SpritePlacement& placement, const RenderOptions& options = {},
+                    const ShadeInputs& inputs = {});
 
 }  // namespace talisman::chunker

@@ -86,6 +86,7 @@ LightSet light_set(const layers::SceneFrame& frame) {
       case layers::Light::Kind::Directional:
         set.directional.push_back({normalized3(float4(vec3(-light.direction))), color});
         break;
+      case layers::Light::Kind::Spot:
       case layers::Light::Kind::Point:
         set.point.push_back({float4(vec3(light.position - eye)), color});
         break;

@@ -76,7 +76,14 @@ CameraState camera_at(const Scene& scene, const std::vector<dmat4>& worlds) {
 LightState light_at(const Light& light, const std::vector<dmat4>& worlds) {
   const dmat4 world = node_matrix(worlds, light.node);
   const dvec3 direction = direction_or(dvec3(world * dvec4(light.direction, 0)), {0, -1, 0});
-  return {light.kind, dvec3(world * dvec4(light.position, 1)), direction, light.color};
+  return {light.kind,
+          dvec3(world * dvec4(light.position, 1)),
+          direction,
+          light.color,
+          light.inner_cone_rad,
+          light.outer_cone_rad,
+          light.casts_shadow,
+          light.shadow};
 }
 
 }  // namespace

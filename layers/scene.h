@@ -52,9 +52,13 @@ struct Material {
   vec3 base_color{0.8f, 0.8f, 0.8f};
   float opacity = 1;  ///< 0 … 1
   int texture = -1;   ///< index into Scene::textures, multiplied with the base colour; -1: none
+  /// T₂ of [LS97 2.3], added to `texture` (T₁) under the same coordinates: base · (k₁ T₁ + k₂ T₂); -1: none.
+  int texture2 = -1;
+  vec2 texture_blend{1, 1};  ///< k₁ and k₂, 0 … 1; used only where there is a texture2
   vec3 specular{0, 0, 0};
   float shininess = 0;  ///< Blinn-Phong exponent, ≥ 0
   vec3 emissive{0, 0, 0};
+  float reflectivity = 0;  ///< 0 … 1: share of the looked-up planar reflection that is added
   bool two_sided = false;  ///< otherwise back faces are culled
   bool unlit = false;      ///< base colour as it is (sky, backdrops)
 };
@@ -66,14 +70,39 @@ struct Skin {
   std::vector<dmat4> joint_from_mesh;  ///< inverse bind matrices, as many
 };
 
+/// How the shadow map of a light is drawn and looked up (chunker/shadow_map.h).
+struct ShadowMapOptions {
+  /// Texels on each side of a map, 0 … 8192; 0: no map, no shadow. Time and memory (4 bytes per texel) grow
+  /// with the square; the blocks of a shadow's edge shrink.
+  int resolution_px = 1024;
+  /// Constant bias in texels of the map, 0 … 100. Too little: surfaces shadow themselves in stripes; too
+  /// much: shadows come loose from what casts them.
+  float bias_texels = 1;
+  /// Bias in multiples of the depth that a slanted caster gains over the filter's reach, 0 … 16.
+  float slope_bias = 1;
+  /// Radius of the percentage-closer filter in texels, 0 … 8: (2r + 1)² depths are compared per look-up, 0 is
+  /// one comparison. More is softer, and slower with the square.
+  int pcf_radius = 1;
+  bool operator==(const ShadowMapOptions&) const = default;
+};
+
+/// The most lights of a scene that may cast shadows.
+inline constexpr int kMaxShadowLights = 4;
+
 struct Light {
-  enum class Kind { Ambient, Directional, Point };
+  enum class Kind { Ambient, Directional, Point, Spot };
   std::string name;
   Kind kind = Kind::Directional;
-  int node = -1;              ///< -1: fixed in the world
-  dvec3 position{0, 0, 0};    ///< in the node's space (Point)
-  dvec3 direction{0, -1, 0};  ///< the way the light travels, in the node's space (Directional)
-  vec3 color{1, 1, 1};        ///< linear, intensity included
+  int node = -1;            ///< -1: fixed in the world
+  dvec3 position{0, 0, 0};  ///< in the node's space (Point, Spot)
+  dvec3 direction{0, -1,
+                  0};   ///< the way the light travels, in the node's space (Directional; Spot: its axis)
+  vec3 color{1, 1, 1};  ///< linear, intensity included
+  /// Spot: angles from the axis, 0 ≤ inner ≤ outer ≤ π/2. Full light inside the inner cone, none outside the
+  /// outer one, smooth between.
+  double inner_cone_rad = 0.4, outer_cone_rad = 0.6;
+  bool casts_shadow = false;  ///< of at most kMaxShadowLights lights; not of an ambient one
+  ShadowMapOptions shadow;
 };
 
 struct Camera {
@@ -156,6 +185,9 @@ struct LightState {
   dvec3 position{0, 0, 0};    ///< world
   dvec3 direction{0, -1, 0};  ///< world, unit length
   vec3 color{1, 1, 1};
+  double inner_cone_rad = 0.4, outer_cone_rad = 0.6;
+  bool casts_shadow = false;
+  ShadowMapOptions shadow;
   bool operator==(const LightState&) const = default;
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <sstream>
@@ -127,7 +128,11 @@ std::string defect_of(const Scene& scene, const Material& material) {
       {color_defect("base color", material.base_color), color_defect("specular color", material.specular),
        color_defect("emissive color", material.emissive), range_defect("opacity", material.opacity, 0, 1),
        finite("shininess", material.shininess), range_defect("shininess", material.shininess, 0, HUGE_VAL),
-       index_in("texture", material.texture, scene.textures.size(), true)});
+       index_in("texture", material.texture, scene.textures.size(), true),
+       index_in("second texture", material.texture2, scene.textures.size(), true),
+       range_defect("texture blend 1", material.texture_blend.x, 0, 1),
+       range_defect("texture blend 2", material.texture_blend.y, 0, 1),
+       range_defect("reflectivity", material.reflectivity, 0, 1)});
 }
 
 // --- Nodes and their motion ---
@@ -202,11 +207,28 @@ std::string defect_of(const Scene& scene, const Track& track) {
 
 // --- What shows the scene ---
 
+std::string cone_defect(const Light& light) {
+  constexpr double kHalfPi = 1.5707963267948966;
+  return first_of({range_defect("outer cone angle", light.outer_cone_rad, 0, kHalfPi),
+                   range_defect("inner cone angle", light.inner_cone_rad, 0, light.outer_cone_rad)});
+}
+
+std::string shadow_defect(const Light& light) {
+  if (light.casts_shadow && light.kind == Light::Kind::Ambient)
+    return broken("of a light with a place or direction", "an ambient light casts a shadow");
+  const ShadowMapOptions& shadow = light.shadow;
+  return first_of({range_defect("shadow resolution", shadow.resolution_px, 0, 8192),
+                   range_defect("shadow bias", shadow.bias_texels, 0, 100),
+                   range_defect("shadow slope bias", shadow.slope_bias, 0, 16),
+                   range_defect("shadow filter radius", shadow.pcf_radius, 0, 8)});
+}
+
 std::string defect_of(const Scene& scene, const Light& light) {
-  if (light.kind == Light::Kind::Directional && light.direction == dvec3{0, 0, 0})
-    return broken("not zero", "direction is zero");
+  const bool aimed = light.kind == Light::Kind::Directional || light.kind == Light::Kind::Spot;
+  if (aimed && light.direction == dvec3{0, 0, 0}) return broken("not zero", "direction is zero");
   return first_of({index_in("node", light.node, scene.nodes.size(), true), finite("position", light.position),
-                   finite("direction", light.direction), color_defect("color", light.color)});
+                   finite("direction", light.direction), color_defect("color", light.color),
+                   cone_defect(light), shadow_defect(light)});
 }
 
 std::string defect_of(const Scene& scene, const Camera& camera) {
@@ -262,6 +284,10 @@ std::string first_in(const Scene& scene, const char* kind, const std::vector<Ite
 std::string scene_defect(const Scene& scene) {
   const std::string background = color_defect("background", scene.background);
   if (!background.empty()) return "scene: " + background;
+  const auto casting = std::count_if(scene.lights.begin(), scene.lights.end(),
+                                     [](const Light& light) { return light.casts_shadow; });
+  if (casting > kMaxShadowLights)
+    return "scene: " + broken(text("at most ", kMaxShadowLights), casting, " lights cast shadows");
   if (scene.cameras.empty()) return {};  // seen from the origin
   const std::string camera = index_in("active camera", scene.active_camera, scene.cameras.size(), false);
   return camera.empty() ? camera : "scene: " + camera;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kMagic =
     0x4d534c54;  // "TLSM"; both ends run on one machine, so bytes are in its order
-constexpr std::uint32_t kVersion = 1;
+constexpr std::uint32_t kVersion = 2;
 
 [[noreturn]] void fail(const std::string& what) { throw InputError("scene stream: " + what); }
 
@@ -150,9 +150,12 @@ void fields(Stream& s, T& m) {
   s.value(m.base_color);
   s.value(m.opacity);
   s.value(m.texture);
+  s.value(m.texture2);
+  s.value(m.texture_blend);
   s.value(m.specular);
   s.value(m.shininess);
   s.value(m.emissive);
+  s.value(m.reflectivity);
   s.flag(m.two_sided);
   s.flag(m.unlit);
 }
@@ -221,11 +224,18 @@ void fields(Reader& s, layers::Track& track) {
 template <typename Stream, Of<layers::Light> T>
 void fields(Stream& s, T& light) {
   s.text(light.name);
-  s.choice(light.kind, layers::Light::Kind::Point);
+  s.choice(light.kind, layers::Light::Kind::Spot);
   s.value(light.node);
   s.value(light.position);
   s.value(light.direction);
   s.value(light.color);
+  s.value(light.inner_cone_rad);
+  s.value(light.outer_cone_rad);
+  s.flag(light.casts_shadow);
+  s.value(light.shadow.resolution_px);
+  s.value(light.shadow.bias_texels);
+  s.value(light.shadow.slope_bias);
+  s.value(light.shadow.pcf_radius);
 }
 
 template <typename Stream, Of<layers::Camera> T>
