@@ -64,10 +64,14 @@ glm::dquat looking(const layers::dvec3& from, const YamlValue& at) {
   return glm::normalize(glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z)));
 }
 
-/// The keys position, rotation_deg, look_at, flight and spin; a flight excludes the three that say where
-/// something rests.
+/// The keys carried_by, position, rotation_deg, look_at, flight and spin; a flight excludes the three that
+/// say where something rests.
 Motion read_motion(YamlMap& map) {
   Motion motion;
+  motion.file = map.self().file();
+  motion.line = map.self().line();
+  if (const YamlValue* carrier = map.find("carried_by"))
+    motion.carried_by = carrier->text(), motion.line = carrier->line();
   layers::dvec3 rotation_deg{0};
   map.read("position", motion.rest.translation);
   map.read("rotation_deg", rotation_deg);
@@ -82,7 +86,7 @@ Motion read_motion(YamlMap& map) {
   return motion;
 }
 
-// --- Models ---
+// --- Models and shapes ---
 
 ModelInstance read_instance(YamlMap map) {
   ModelInstance instance;
@@ -90,6 +94,17 @@ ModelInstance read_instance(YamlMap map) {
   instance.motion = read_motion(map);
   map.finish();
   return instance;
+}
+
+/// The key instances, or the motion of the one instance called `id`.
+std::vector<ModelInstance> read_instances(YamlMap& map, const std::string& id) {
+  std::vector<ModelInstance> instances;
+  if (const YamlValue* list = map.find("instances")) {
+    for (const YamlValue& item : list->items()) instances.push_back(read_instance(item.map()));
+  } else {
+    instances.push_back({id, read_motion(map)});
+  }
+  return instances;
 }
 
 ModelRecipe read_model(YamlMap map) {
@@ -104,13 +119,74 @@ ModelRecipe read_model(YamlMap map) {
   map.read("turn_deg", model.turn_deg);
   map.read("centered", model.centered);
   map.read("two_sided", model.two_sided);
-  if (const YamlValue* instances = map.find("instances")) {
-    for (const YamlValue& item : instances->items()) model.instances.push_back(read_instance(item.map()));
-  } else {
-    model.instances.push_back({id, read_motion(map)});
-  }
+  model.instances = read_instances(map, id);
   map.finish();
   return model;
+}
+
+layers::dvec3 positive_sides(const YamlValue& value) {
+  const layers::dvec3 size = value.vector();
+  if (!(size.x > 0 && size.y > 0 && size.z > 0)) value.fail("every side above 0");
+  return size;
+}
+
+/// The one key that says what the shape is, with its size.
+void read_kind(YamlMap& map, ShapeContent& shape) {
+  using Kind = ShapeContent::Kind;
+  int kinds = 0;
+  const auto found = [&](const char* key, Kind kind) {
+    const YamlValue* value = map.find(key);
+    if (!value) return value;
+    if (++kinds > 1) value->fail("one of box, sphere, cylinder and plane, not two");
+    shape.kind = kind;
+    return value;
+  };
+  if (const YamlValue* box = found("box", Kind::Box)) shape.size_m = positive_sides(*box);
+  if (const YamlValue* sphere = found("sphere", Kind::Sphere))
+    shape.size_m = sphere->is_list() ? positive_sides(*sphere) : layers::dvec3(sphere->number(kPositive));
+  if (const YamlValue* cylinder = found("cylinder", Kind::Cylinder)) {
+    const layers::dvec2 size = cylinder->pair(kPositive);
+    shape.size_m = {size.x, size.y, size.x};
+  }
+  if (const YamlValue* plane = found("plane", Kind::Plane)) {
+    const layers::dvec2 size = plane->pair(kPositive);
+    shape.size_m = {size.x, 1, size.y};
+  }
+  if (kinds == 0) map.self().fail("has one of the keys box, sphere, cylinder and plane");
+}
+
+void read_material(YamlMap& map, layers::Material& material) {
+  double opacity = 1, shininess = 0;
+  map.read_color("color", material.base_color);
+  map.read_color("specular", material.specular);
+  map.read_color("emissive", material.emissive);
+  map.read("opacity", opacity, {0, 1});
+  map.read("shininess", shininess, {0, 1e5});
+  map.read("two_sided", material.two_sided);
+  map.read("unlit", material.unlit);
+  material.opacity = static_cast<float>(opacity);
+  material.shininess = static_cast<float>(shininess);
+}
+
+ShapeRecipe read_shape(YamlMap map) {
+  ShapeRecipe shape;
+  ShapeContent& content = shape.content;
+  const std::string id = map.need("id").text();
+  content.material.name = id;
+  read_kind(map, content);
+  const bool is_round =
+      content.kind == ShapeContent::Kind::Sphere || content.kind == ShapeContent::Kind::Cylinder;
+  if (!is_round) content.segments = 1;
+  map.read("segments", content.segments, is_round ? 3 : 1, 512);
+  if (const YamlValue* taper = map.find("taper")) {
+    if (content.kind != ShapeContent::Kind::Cylinder) taper->fail("only with cylinder");
+    content.taper = taper->number({0, 1});
+  }
+  read_material(map, content.material);
+  if (const YamlValue* texture = map.find("texture")) content.texture_file = asset(*texture);
+  shape.instances = read_instances(map, id);
+  map.finish();
+  return shape;
 }
 
 // --- Ground and sky ---
@@ -224,6 +300,8 @@ layers::Light read_light(YamlMap map) {
 SceneRecipe read_scene_recipe(YamlMap& sequence) {
   SceneRecipe recipe;
   sequence.read_color("background", recipe.background);
+  if (const YamlValue* shapes = sequence.find("shapes"))
+    for (const YamlValue& item : shapes->items()) recipe.shapes.push_back(read_shape(item.map()));
   if (const YamlValue* models = sequence.find("models"))
     for (const YamlValue& item : models->items()) recipe.models.push_back(read_model(item.map()));
   if (const YamlValue* terrain = sequence.find("terrain")) recipe.terrain = read_terrain(terrain->map());

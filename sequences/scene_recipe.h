@@ -5,12 +5,14 @@
 /// `build_scene` then opens the assets. All units are those of the file: metres, seconds, degrees
 /// (docs/sequence-format.md).
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "layers/layer.h"
 #include "sequences/model_import.h"
+#include "sequences/shape_content.h"
 #include "sequences/sky_content.h"
 #include "sequences/terrain_content.h"
 #include "sequences/yaml_reader.h"
@@ -19,6 +21,9 @@ namespace talisman::sequences {
 
 /// Where something stands, or how it flies and turns.
 struct Motion {
+  std::string carried_by;  ///< id of the shape with which it moves; empty: it moves in the world
+  std::string file;        ///< and line: where it is written, for errors that show only with the scene
+  int line = 0;
   layers::Transform rest;
   std::optional<layers::FlightTrack> flight;
   std::optional<layers::SpinTrack> spin;
@@ -39,12 +44,18 @@ struct ModelRecipe {
   std::vector<ModelInstance> instances;
 };
 
+struct ShapeRecipe {
+  ShapeContent content;
+  std::vector<ModelInstance> instances;  ///< parts are called like them
+};
+
 struct CameraRecipe {
   double fov_deg = 50, near_m = 0.1, far_m = 10000;
   Motion motion;
 };
 
 struct SceneRecipe {
+  std::vector<ShapeRecipe> shapes;
   std::vector<ModelRecipe> models;
   std::optional<TerrainContent> terrain;
   std::optional<SkyContent> sky;
@@ -53,14 +64,15 @@ struct SceneRecipe {
   layers::vec3 background{0, 0, 0};
 };
 
-/// Takes the keys background, models, terrain, sky, camera and lights out of the map; leaves the others
-/// alone.
+/// Takes the keys background, shapes, models, terrain, sky, camera and lights out of the map; leaves the
+/// others alone.
 SceneRecipe read_scene_recipe(YamlMap& sequence);
 
 struct BuiltScene {
   layers::Scene scene;
   std::vector<LayerTag> layer_tags;
   std::vector<std::string> warnings;
+  std::map<std::string, int> carriers = {};  ///< the node of each shape that can carry others, by its name
 };
 
 /// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of

@@ -79,7 +79,7 @@ Sequence load_yaml(const std::string& path) {
   if (const std::string defect = layers::first_defect(built.scene); !defect.empty())
     throw InputError(defect, path);
   if (built.scene.parts.empty())
-    throw InputError("shows nothing, rule: at least one of models, terrain and sky", path);
+    throw InputError("shows nothing, rule: at least one of shapes, models, terrain and sky", path);
   std::vector<layers::LayerSpec> specs;
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   if (specs.empty()) specs = specs_of_model(built.scene, built.layer_tags);

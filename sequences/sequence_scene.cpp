@@ -22,10 +22,21 @@ int add_node(layers::Scene& scene, const std::string& name, int parent, const la
   return static_cast<int>(scene.nodes.size()) - 1;
 }
 
+/// The node below which a motion takes place; -1: the world.
+int carrier_of(const BuiltScene& built, const Motion& motion) {
+  if (motion.carried_by.empty()) return -1;
+  const auto found = built.carriers.find(motion.carried_by);
+  if (found == built.carriers.end())
+    throw InputError("carried_by is '" + motion.carried_by + "', rule: the name of a shape before it",
+                     motion.file, motion.line);
+  return found->second;
+}
+
 /// The node (with one below it for a spin, so that both motions add up) that carries something; returns the
 /// lowest.
-int add_motion(layers::Scene& scene, const std::string& name, const Motion& motion) {
-  int node = add_node(scene, name, -1, motion.rest);
+int add_motion(BuiltScene& built, const std::string& name, const Motion& motion) {
+  layers::Scene& scene = built.scene;
+  int node = add_node(scene, name, carrier_of(built, motion), motion.rest);
   if (motion.flight) scene.tracks.push_back({node, *motion.flight});
   if (!motion.spin) return node;
   node = add_node(scene, "spin", node);
@@ -110,15 +121,36 @@ void add_model(BuiltScene& built, const ModelRecipe& recipe) {
   const SharedContent content = add_content(built.scene, model.scene, recipe.two_sided);
   const layers::Transform fit = fitting(recipe, model.scene);
   for (const ModelInstance& instance : recipe.instances) {
-    const int carrier = add_motion(built.scene, instance.name, instance.motion);
+    const int carrier = add_motion(built, instance.name, instance.motion);
     add_instance(built, model, content, add_node(built.scene, "fit", carrier, fit), instance.name);
   }
 }
 
-void add_camera(layers::Scene& scene, const CameraRecipe& recipe) {
+void add_shape(BuiltScene& built, const ShapeRecipe& recipe) {
+  layers::Scene& scene = built.scene;
+  layers::Material material = recipe.content.material;
+  if (!recipe.content.texture_file.empty()) {
+    material.texture = static_cast<int>(scene.textures.size());
+    scene.textures.push_back(read_texture(recipe.content.texture_file));
+  }
+  const int mesh = static_cast<int>(scene.meshes.size());
+  scene.meshes.push_back(shape_mesh(recipe.content));
+  scene.meshes.back().name = material.name;
+  for (const ModelInstance& instance : recipe.instances) {
+    const int node = add_motion(built, instance.name, instance.motion);
+    if (!built.carriers.emplace(instance.name, node).second)
+      throw InputError("two shapes are called '" + instance.name + "', rule: names are unique",
+                       instance.motion.file, instance.motion.line);
+    scene.parts.push_back({instance.name, node, mesh, static_cast<int>(scene.materials.size()), -1});
+  }
+  scene.materials.push_back(std::move(material));
+}
+
+void add_camera(BuiltScene& built, const CameraRecipe& recipe) {
+  layers::Scene& scene = built.scene;
   layers::Camera camera;
   camera.name = "camera";
-  camera.node = add_motion(scene, "camera", recipe.motion);
+  camera.node = add_motion(built, "camera", recipe.motion);
   camera.fov_y_rad = glm::radians(recipe.fov_deg);
   camera.near_m = recipe.near_m;
   camera.far_m = recipe.far_m;
@@ -187,8 +219,9 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   built.scene.background = recipe.background;
   if (recipe.sky) add_sky(built.scene, *recipe.sky);
   if (recipe.terrain) add_terrain(built.scene, *recipe.terrain);
+  for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);
   for (const ModelRecipe& model : recipe.models) add_model(built, model);
-  if (recipe.camera) add_camera(built.scene, *recipe.camera);
+  if (recipe.camera) add_camera(built, *recipe.camera);
   built.scene.lights = recipe.lights;
   add_default_view(built.scene);
   return built;

@@ -147,7 +147,7 @@ TEST(LoadSequence, WhatIsWrongIsRefusedWithItsLine) {
       {6, "  - {id: still, file: box.obj, centered: maybe}",
        "models[0].centered is 'maybe', rule: true or false"},
       {6, "  - {id: still, file: box.obj, wings: 2}",
-       "key 'wings' is not known here; keys are centered, file, flight"},
+       "key 'wings' is not known here; keys are carried_by, centered, file, flight"},
       {6, "  - {id: still, id: other, file: box.obj}", "each key only once"},
       {11, "      - {name: one, flight: []}", "flight is a list of 0"},
       {11, "      - {name: one, flight: [{t: 1, position: [0, 0, 0]}, {t: 1, position: [1, 0, 0]}]}",
