@@ -69,9 +69,9 @@ struct LayerSpec {
   std::vector<std::string> part_globs;
   OrderGroup group = OrderGroup::Normal;
   LayerPreferences preferences;
-  ShadingSpec shading;
+  ShadingSpec shading{};
   bool casts_shadows = true;  ///< its lit, opaque parts are drawn into the shadow maps
-  Keys<double> fade;  ///< alpha multiplier of its sprites, 0 … 1, over time: to see what is behind; empty: 1
+  Keys<double> fade{};  ///< alpha multiplier of its sprites, 0 … 1, over time: to see what is behind; empty: 1
 };
 
 /// Which terms of the shading a sprite holds that depend on more than its own surface and the lights. A term
@@ -97,7 +97,7 @@ struct Layer {
   int base = -1;   ///< shade layers: id of the geometry layer whose surface this is a term of
   int light = -1;  ///< Shadow: index into Scene::lights
   HeldTerms holds;
-  HeldTerms factored;  ///< Geometry: the terms that are called for and in shade layers of its own
+  HeldTerms factored;          ///< Geometry: the terms that are called for and in shade layers of its own
   std::vector<int> casters;    ///< holds.shadows: ids of the geometry layers whose shadows may fall on it
   std::vector<int> reflected;  ///< holds.reflection: ids of the geometry layers that it mirrors
   /// Where that matters and is so: all of it (with a reflection: all that reflects) lies in one plane.

@@ -153,8 +153,8 @@ vec2 material_blend(const Scene& scene, const Layer& layer) {
   return {1, 1};
 }
 
-/// The terms that get layers: those that are asked for and called for, and whatever must leave the sprite with
-/// them.
+/// The terms that get layers: those that are asked for and called for, and whatever must leave the sprite
+/// with them.
 HeldTerms terms_to_factor(const ShadingSpec& shading, const HeldTerms& called) {
   HeldTerms terms;
   terms.second_texture = shading.textures && called.second_texture;
@@ -168,7 +168,8 @@ HeldTerms terms_to_factor(const ShadingSpec& shading, const HeldTerms& called) {
 /// The shade layers of one base, in the order of the compositor.
 class Factoring {
  public:
-  Factoring(const Scene& scene, const LayerSpec& spec, Layer& base) : scene_(scene), spec_(spec), base_(base) {
+  Factoring(const Scene& scene, const LayerSpec& spec, Layer& base)
+      : scene_(scene), spec_(spec), base_(base) {
     const HeldTerms called = base.holds, terms = terms_to_factor(spec.shading, called);
     if (terms.second_texture) add_second_texture();
     if (terms.shadows)

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "fiducials/fiducials.h"
+#include "layers/shade_state.h"
 #include "warp/shade.h"
 
 namespace talisman::sequences {
@@ -62,8 +63,11 @@ const std::vector<LayerState>& states_at(const Pipeline& pipeline, PipelineState
   const layers::SceneFrame scene_frame = pipeline.scene.at(time_of(pipeline, frame));
   captured.states.reserve(pipeline.layers.layers.size());
   for (const Layer& layer : pipeline.layers.layers)
-    captured.states.push_back(
-        layers::capture(scene_frame, layer, pipeline.bounds[layer.id], pipeline.settings.view));
+    captured.states.push_back(layer.base >= 0 ? layers::shade_state(captured.states[layer.base], layer)
+                                              : layers::capture(scene_frame, layer, pipeline.bounds[layer.id],
+                                                                pipeline.settings.view));
+  layers::capture_influences(scene_frame, pipeline.layers, captured.states);
+  captured.shadow_maps = shadow_map_keys(pipeline, scene_frame);
   captured.placements.resize(captured.states.size());
   return captured.states;
 }
@@ -119,6 +123,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));
+  assessment.held_geometric_px += assessment.fiducials.shade.px;
   return assessment;
 }
 

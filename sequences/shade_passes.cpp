@@ -122,13 +122,13 @@ Mirrored draw_mirrored(const Pipeline& pipeline, ShadowMapStore& maps, const chu
   const std::optional<Affine2> reflection_from_screen = inverse(wide.screen_from_sprite);
   if (!reflection_from_screen) return mirrored;
   ShadeInputs inputs;
-  const auto by_light =
-      maps_for(pipeline, maps, frame,
-               any_shadows(pipeline) ? shadow_lights(pipeline, layer) : std::vector<int>{});
+  const auto by_light = maps_for(pipeline, maps, frame,
+                                 any_shadows(pipeline) ? shadow_lights(pipeline, layer) : std::vector<int>{});
   inputs.shadow_maps = by_light;
-  mirrored.picture = chunker::render(prepared, chunker::mirrored_frame(frame, mirror.point, mirror.normal),
-                                     parts_before(pipeline, frame, layer, mirror),
-                                     pipeline.settings.view.display_px, wide, pipeline.settings.render, inputs);
+  mirrored.picture =
+      chunker::render(prepared, chunker::mirrored_frame(frame, mirror.point, mirror.normal),
+                      parts_before(pipeline, frame, layer, mirror), pipeline.settings.view.display_px, wide,
+                      pipeline.settings.render, inputs);
   mirrored.reflection_from_screen = *reflection_from_screen;
   return mirrored;
 }
@@ -242,7 +242,8 @@ chunker::RenderResult draw_all_in_one_pass(const Pipeline& pipeline, ShadowMapSt
 SpriteMultipliers multipliers_at(const Layer& layer, double time_s) {
   SpriteMultipliers m;
   if (!layer.fade.values.empty()) m.alpha = static_cast<float>(layers::value_at(layer.fade, time_s));
-  if (!layer.gain.values.empty()) m.color = layers::vec3(static_cast<float>(layers::value_at(layer.gain, time_s)));
+  if (!layer.gain.values.empty())
+    m.color = layers::vec3(static_cast<float>(layers::value_at(layer.gain, time_s)));
   m.alpha = std::clamp(m.alpha, 0.0f, 1.0f);
   m.color = glm::clamp(m.color, 0.0f, 1.0f);
   return m;

@@ -6,9 +6,10 @@
 ///
 ///   shadow map     the casters' depths as seen from the light; kept while light and casters rest, whichever
 ///                  layer looks it up
-///   reflection     what the layer mirrors, as a mirrored camera sees it, as large and dense as the sprite that
-///                  looks it up; drawn with each render of that sprite. One bounce: mirrors in a mirror do not
-///                  mirror. A layer wholly behind the mirror is left out; one that reaches through it is
+///   reflection     what the layer mirrors, as a mirrored camera sees it, as large and dense as the sprite
+///   that
+///                  looks it up; drawn with each render of that sprite. One bounce: mirrors in a mirror do
+///                  not mirror. A layer wholly behind the mirror is left out; one that reaches through it is
 ///                  mirrored whole.
 ///
 /// What a scene does not call for makes no pass and allocates nothing.
@@ -74,8 +75,8 @@ class ShadowMapStore {
   std::vector<Entry> maps_;  ///< by light
 };
 
-/// The layer's term of the shading, at `frame`, through `placement`. The counters are those of the sprite and of
-/// the reflection behind it.
+/// The layer's term of the shading, at `frame`, through `placement`. The counters are those of the sprite and
+/// of the reflection behind it.
 chunker::RenderResult draw_layer(const Pipeline& pipeline, ShadowMapStore& maps,
                                  const chunker::PreparedScene& prepared, const layers::SceneFrame& frame,
                                  const layers::Layer& layer, const layers::SpritePlacement& placement);
@@ -90,7 +91,7 @@ chunker::RenderResult draw_all_in_one_pass(const Pipeline& pipeline, ShadowMapSt
 
 /// The multipliers of the layer's sprite at a time.
 struct SpriteMultipliers {
-  float alpha = 1;            ///< all four channels
+  float alpha = 1;              ///< all four channels
   layers::vec3 color{1, 1, 1};  ///< colour alone
 };
 SpriteMultipliers multipliers_at(const layers::Layer& layer, double time_s);

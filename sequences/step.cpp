@@ -5,6 +5,7 @@
 #include <map>
 
 #include "layers/check.h"
+#include "layers/shading.h"
 #include "sequences/draw_instant.h"
 #include "sequences/layer_planning.h"
 
@@ -33,9 +34,12 @@ std::vector<int> order_layers(const Pipeline& pipeline, const std::vector<LayerS
   if (states.empty()) return {};
   std::vector<layers::WorldBounds> bounds;
   bounds.reserve(states.size());
-  for (const LayerState& state : states) bounds.push_back(layers::bounds_of(state.world_points));
-  return layers::back_to_front(layers::dvec3(states.front().camera.world_from_camera[3]),
-                               pipeline.layers.layers, bounds);
+  const std::vector<Layer>& all = pipeline.layers.layers;
+  for (const LayerState& state : states)  // shade layers follow their bases and are not sorted
+    bounds.push_back(all[state.layer].base < 0 ? layers::bounds_of(state.world_points)
+                                               : layers::WorldBounds{});
+  const layers::dvec3 eye(states.front().camera.world_from_camera[3]);
+  return layers::with_shade_layers(all, layers::back_to_front(eye, all, bounds));
 }
 
 /// What the policy `reference` would render for this frame: every layer in view, without growth.
@@ -75,22 +79,25 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
           looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
       memory = {states_at(pipeline, state, instant)[decision.layer],
                 placement_at(pipeline, state, decision.layer, instant), report.frame, instant, false};
-      decision.cost = cost_of(pipeline.layers.layers[decision.layer], memory.placement.size_px);
+      const Layer& layer = pipeline.layers.layers[decision.layer];
+      decision.cost = cost_of(layer, memory.placement.size_px);
+      state.shade_plan.add_render(pipeline, layer, state.captured.at(instant).shadow_maps, report.shade);
     }
     decision.depicts_frame = memory.depicts_frame;
   }
 }
 
 /// The sprites of this frame, back to front, each with the map that puts it in its place.
-std::vector<ShownSprite> sprites_shown(const PipelineState& state, const FrameReport& report,
-                                       const std::vector<int>& order) {
+std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineState& state,
+                                       const FrameReport& report, const std::vector<int>& order) {
   std::vector<ShownSprite> shown;
   for (const int layer : order) {
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
-                     memory.placement.size_px, report.frame - memory.frame_rendered});
+                     memory.placement.size_px, report.frame - memory.frame_rendered,
+                     multipliers_at(pipeline.layers.layers[layer], time_of(pipeline, report.frame))});
   }
   return shown;
 }
@@ -106,9 +113,8 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
     if (instant != report.frame && others.count(instant) == 0)
       others.emplace(instant, pipeline.scene.at(time_of(pipeline, instant)));
     chunker::RenderResult result =
-        chunker::render(prepared, instant != report.frame ? others.at(instant) : now,
-                        pipeline.layers.layers[sprite.layer].parts, pipeline.settings.view.display_px,
-                        memory.placement, pipeline.settings.render);
+        draw_layer(pipeline, state.shadow_maps, prepared, instant != report.frame ? others.at(instant) : now,
+                   pipeline.layers.layers[sprite.layer], memory.placement);
     state.sprites.put(sprite.layer, std::move(result.sprite));
     memory.drawn = true;
     if (memory.frame_rendered != report.frame) {
@@ -128,6 +134,8 @@ chunker::CompositeResult composite_shown(const Pipeline& pipeline, const std::ve
     chunker::PlacedSprite p;
     p.sprite = sprites.find(sprite.layer);
     p.screen_from_sprite = sprite.screen_from_sprite;
+    p.alpha_multiplier = sprite.multipliers.alpha;
+    p.color_multiplier = sprite.multipliers.color;
     placed.push_back(p);
   }
   return chunker::composite(placed, pipeline.settings.view.display_px, pipeline.scene.background);
@@ -135,16 +143,12 @@ chunker::CompositeResult composite_shown(const Pipeline& pipeline, const std::ve
 
 /// All parts in one pass of the renderer into one display-sized sprite: the picture without layers.
 chunker::CompositeResult draw_in_one_pass(const Pipeline& pipeline, const SceneFrame& scene_frame,
-                                          const chunker::PreparedScene& prepared,
+                                          const chunker::PreparedScene& prepared, ShadowMapStore& maps,
                                           chunker::RenderCounters& counters) {
-  std::vector<int> parts;
-  for (const Layer& layer : pipeline.layers.layers)
-    parts.insert(parts.end(), layer.parts.begin(), layer.parts.end());
   SpritePlacement whole_display;
   whole_display.size_px = pipeline.settings.view.display_px;
   const chunker::RenderResult result =
-      chunker::render(prepared, scene_frame, parts, pipeline.settings.view.display_px, whole_display,
-                      pipeline.settings.render);
+      draw_all_in_one_pass(pipeline, maps, prepared, scene_frame, whole_display);
   counters += result.counters;
   chunker::PlacedSprite placed;
   placed.sprite = &result.sprite;
@@ -156,7 +160,7 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
   chunker::CompositeResult result;
   const Stopwatch render_watch;
   if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
-    result = draw_in_one_pass(pipeline, now, prepared, report.render);
+    result = draw_in_one_pass(pipeline, now, prepared, state.shadow_maps, report.render);
     report.times.render_ms = render_watch.ms();
   } else {
     draw_missing_sprites(pipeline, state, now, prepared, report);
@@ -200,7 +204,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   report.pixels_reference = reference_pixels(pipeline, states);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);
-  report.shown = sprites_shown(state, report, order);
+  report.shown = sprites_shown(pipeline, state, report, order);
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.
@@ -210,7 +214,9 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
 
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
   chunker::RenderCounters ignored;
-  return draw_in_one_pass(pipeline, pipeline.scene.at(time_of(pipeline, frame)), prepared, ignored).frame;
+  ShadowMapStore maps;
+  return draw_in_one_pass(pipeline, pipeline.scene.at(time_of(pipeline, frame)), prepared, maps, ignored)
+      .frame;
 }
 
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {

@@ -24,6 +24,7 @@
 #include "layers/sprite_transform.h"
 #include "layers/state.h"
 #include "regulator/plan.h"
+#include "sequences/shade_passes.h"
 #include "warp/fit.h"
 
 namespace talisman::sequences {
@@ -65,6 +66,7 @@ struct LayerMemory {
 struct CapturedFrame {
   std::vector<layers::LayerState> states;                          ///< by layer id
   std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
+  std::vector<ShadowMapKey> shadow_maps;  ///< by light; empty where no shadow is called for
 };
 
 /// All that survives a frame.
@@ -72,6 +74,8 @@ struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline) : memory(pipeline.layers.layers.size()) {}
   std::vector<LayerMemory> memory;
   chunker::SpriteStore sprites;
+  ShadePlan shade_plan;
+  ShadowMapStore shadow_maps;
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
 };
 
@@ -85,6 +89,7 @@ struct ShownSprite {
   layers::dmat3 screen_from_sprite{1.0};
   layers::ivec2 size_px{0, 0};
   int age_frames = 0;
+  SpriteMultipliers multipliers;
 };
 
 struct FrameReport {
@@ -98,6 +103,7 @@ struct FrameReport {
   std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
   chunker::CompositeCounters composite;
   std::int64_t sprite_bytes = 0;  ///< in the store after this frame
+  ShadeCounters shade;            ///< passes behind shadows and reflections, as planned
   int late_renders = 0;           ///< sprites drawn now that had been planned for an earlier frame
   StageTimes times;
   chunker::Frame picture;  ///< empty when only planned
