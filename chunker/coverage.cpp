@@ -151,6 +151,17 @@ bool may_cover(const EdgeSet& edges, const LatticeBox& box) {
   return true;
 }
 
+void reduce_samples(const LatticeBox& box, int samples, Coverage& coverage) {
+  for (int y = box.y0; y <= box.y1; ++y)
+    for (std::uint32_t left = coverage.touched[y] & ~coverage.full[y]; left != 0; left &= left - 1) {
+      const int x = __builtin_ctz(left);
+      std::uint16_t& mask = coverage.mask[y * kChunkSize + x];
+      mask = reduced_mask(mask, samples);
+      if (mask == 0) coverage.touched[y] &= ~(1u << x);
+      if (mask == kFullMask) coverage.full[y] |= 1u << x;
+    }
+}
+
 void cover_scalar(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
   for (int y = box.y0; y <= box.y1; ++y) {
     out.touched[y] = out.full[y] = 0;

@@ -44,6 +44,20 @@ struct Coverage {
 /// `cover_scalar` on every processor.
 void cover(const EdgeSet& edges, const LatticeBox& box, Coverage& out);
 
+/// With 1 or 4 samples per texel instead of 16, each stands for its share of the mask: sample 5, at (3/8,
+/// 3/8), for all of it; samples 1, 7, 8 and 14 (no two in one column) for the row they are in.
+inline constexpr int kOnlySample = 5;
+inline std::uint16_t reduced_mask(std::uint16_t mask, int samples) {
+  if (samples == 1) return mask >> kOnlySample & 1 ? kFullMask : 0;
+  unsigned reduced = 0;
+  for (const int sample : {1, 7, 8, 14})
+    if (mask >> sample & 1) reduced |= 0xfu << (sample & ~3);
+  return static_cast<std::uint16_t>(reduced);
+}
+
+/// Applies reduced_mask() to what cover() wrote. `samples` is 1 or 4.
+void reduce_samples(const LatticeBox& box, int samples, Coverage& coverage);
+
 /// The definition, sample by sample.
 void cover_scalar(const EdgeSet& edges, const LatticeBox& box, Coverage& out);
 

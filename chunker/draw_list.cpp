@@ -102,22 +102,11 @@ class PartAssembly {
       std::array<ProjectedVertex, 3> projected;
       std::array<dvec3, 3> weights;
       for (int j = 0; j < 3; ++j) {
-        projected[j] = project_cut(fan[j]->point);
+        projected[j] = project_cut(view_, fan[j]->point);
         weights[j] = fan[j]->weights;
       }
       emit(corner, projected, &weights, block);
     }
-  }
-
-  /// A cut vertex lies on the border of the region up to rounding; this puts it there.
-  ProjectedVertex project_cut(dvec3 p) const {
-    p.z = std::max(p.z, view_.region.near_w);
-    const dvec3 lo(view_.region.center_px - kGuardBandPx, 0), hi(view_.region.center_px + kGuardBandPx, 0);
-    p.x = std::clamp(p.x, lo.x * p.z, hi.x * p.z);
-    p.y = std::clamp(p.y, lo.y * p.z, hi.y * p.z);
-    ProjectedVertex v = project(view_, p);
-    if (v.flags & kClipFlags) v.flags = kNotFinite;
-    return v;
   }
 
   /// `weights`: the corners of a cut piece, as weights of the whole triangle's; null for a whole triangle.
@@ -188,7 +177,7 @@ class PartAssembly {
     for (int k = 0; k < 3; ++k) {
       ShadePoint point = vertices_.shade_point(static_cast<int>(corner[k]));
       point.normal = float4(layers::vec3(normal));
-      point.position = float4(layers::vec3((p[0] + p[1] + p[2]) / 3.0));
+      point.lit_at = float4(layers::vec3((p[0] + p[1] + p[2]) / 3.0));
       write_attributes(shader_, point, own[k].data());
     }
   }
@@ -225,11 +214,14 @@ void append(PartAssembly& assembly, std::vector<Block> blocks, std::uint32_t bat
 
 void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& frame,
                      std::span<const int> parts, layers::ivec2 display_px,
-                     const layers::SpritePlacement& placement, const RenderOptions& options, DrawList& list) {
+                     const layers::SpritePlacement& placement, const RenderOptions& options,
+                     const ShadeInputs& inputs, DrawList& list) {
   TALISMAN_CHECK(frame.scene == &prepared.scene());
   const layers::Scene& scene = *frame.scene;
   list.size_px = placement.empty() ? layers::ivec2{0, 0} : placement.size_px;
-  list.lights = light_set(frame);
+  list.lights = light_set(frame, inputs);
+  list.term = inputs.term;
+  list.reflection = {inputs.reflection, inputs.reflection_from_screen * placement.screen_from_sprite};
   list.batches.reserve(parts.size());
   const auto view = sprite_view(frame, display_px, placement);
   for (const int index : parts) {
@@ -237,7 +229,7 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
     const layers::Mesh& mesh = scene.meshes[part.mesh];
     list.polygons_in += mesh.triangle_count();
     if (!view) continue;
-    const Shader shader = make_shader(prepared, part, list.lights, options);
+    const Shader shader = make_shader(prepared, part, list.lights, options, inputs, &list.reflection);
     if (shader.opacity == 0) continue;
     list.batches.push_back({shader, {}});
     const bool flat = shader.lit && (options.shading == Shading::Flat || mesh.normals.empty());

@@ -26,7 +26,9 @@ struct Batch {
 
 struct DrawList {
   layers::ivec2 size_px{0, 0};
-  LightSet lights;  ///< shaders refer to it: a list is not copied
+  LightSet lights;              ///< shaders refer to it: a list is not copied
+  ReflectionLookup reflection;  ///< likewise
+  ShadeTerm term = ShadeTerm::Full;
   std::vector<Batch> batches;
   std::vector<Triangle> triangles;
   std::int64_t polygons_in = 0;
@@ -40,6 +42,7 @@ struct DrawList {
 /// parallel blocks whose results are joined in order.
 void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& frame,
                      std::span<const int> parts, layers::ivec2 display_px,
-                     const layers::SpritePlacement& placement, const RenderOptions& options, DrawList& list);
+                     const layers::SpritePlacement& placement, const RenderOptions& options,
+                     const ShadeInputs& inputs, DrawList& list);
 
 }  // namespace talisman::chunker

@@ -33,8 +33,19 @@ void ChunkRenderer::draw_box(std::span<const std::uint32_t> triangles, const Lat
   std::array<Float4, kChunkSize> row;
   for (int y = box.y0; y <= box.y1; ++y) {
     for (int x = box.x0; x <= box.x1; ++x) row[x] = buffer_.resolve(y * kChunkSize + x);
-    encode_row(&row[box.x0], box.x1 - box.x0 + 1, &out.texels[y * kChunkSize + box.x0]);
+    finish_row({&row[box.x0], &row[box.x1] + 1}, box.x0, y, out);
   }
+}
+
+void ChunkRenderer::finish_row(std::span<Float4> row, int x0, int y, Chunk& out) const {
+  finish_term(list_.term, row);
+  if (linear_ == nullptr) {
+    encode_row(row.data(), static_cast<int>(row.size()), &out.texels[y * kChunkSize + x0]);
+    return;
+  }
+  LinearColor* to =
+      &linear_->texels[static_cast<std::size_t>(origin_.y + y) * linear_->size_px.x + origin_.x + x0];
+  for (const Float4& c : row) *to++ = {c[0], c[1], c[2], c[3]};
 }
 
 void ChunkRenderer::draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box,
@@ -64,26 +75,37 @@ bool ChunkRenderer::draw_triangle(std::uint32_t order, const LatticeBox& box) {
   const EdgeSet edges = edges_of(t, origin_.x, origin_.y);
   if (!may_cover(edges, texels)) return true;
   cover(edges, texels, coverage_);
+  if (options_.samples != kSamples) reduce_samples(texels, options_.samples, coverage_);
   const Gradients gradients = gradients_of(t);
   gather_visible(t, gradients, texels);
   if (batch_.count == 0) return true;
   const Batch& batch = list_.batches[t.batch];
   const Shader& shader = batch.shader;
   shade_batch(shader, interpolator_of(t, gradients, batch.attributes.data(), shader.layout.count), batch_);
+  count_shading(shader);
+  return store_fragments(order);
+}
+
+void ChunkRenderer::count_shading(const Shader& shader) {
   counters_.pixels_shaded += batch_.count;
-  counters_.texture_samples += shader.pyramid != nullptr ? batch_.count : 0;
-  return store_fragments(order, gradients);
+  counters_.texture_samples += batch_.texture_samples;
+  if (shader.shadowed)
+    counters_.shadow_lookups += static_cast<std::int64_t>(batch_.count) * shader.lights->shadows;
+  if (shader.reflection != nullptr) counters_.reflection_lookups += batch_.count;
 }
 
 void ChunkRenderer::gather_visible(const Triangle& t, const Gradients& gradients, const LatticeBox& box) {
   int count = 0;
+  const bool sloped = options_.samples != 1;
+  depth_dx_ = sloped ? static_cast<float>(gradients.depth_x) : 0;
+  depth_dy_ = sloped ? static_cast<float>(gradients.depth_y) : 0;
   for (int y = box.y0; y <= box.y1; ++y) {
     const float dy = from_corner(origin_.y + y, t.y[0]);
     for (std::uint32_t left = coverage_.touched[y]; left != 0; left &= left - 1) {
       const int x = __builtin_ctz(left), texel = y * kChunkSize + x;
       const bool full = coverage_.full[y] >> x & 1;
       const std::uint16_t mask = full ? kFullMask : coverage_.mask[texel];
-      const DepthPlane depth = depth_plane(t, gradients, origin_.x + x, origin_.y + y);
+      const DepthPlane depth = plane_of(t, gradients, origin_.x + x, origin_.y + y);
       if (buffer_.hides(texel, mask, depth)) continue;
       const Centroid at = full ? Centroid{0.5f, 0.5f} : centroid_of(mask);
       texel_[count] = static_cast<std::uint16_t>(texel);
@@ -98,11 +120,11 @@ void ChunkRenderer::gather_visible(const Triangle& t, const Gradients& gradients
 }
 
 /// False if the fragments did not fit.
-bool ChunkRenderer::store_fragments(std::uint32_t order, const Gradients& gradients) {
+bool ChunkRenderer::store_fragments(std::uint32_t order) {
   Fragment fragment;
   fragment.order = order;
-  fragment.depth.dx = static_cast<float>(gradients.depth_x);
-  fragment.depth.dy = static_cast<float>(gradients.depth_y);
+  fragment.depth.dx = depth_dx_;
+  fragment.depth.dy = depth_dy_;
   for (int i = 0; i < batch_.count; ++i) {
     fragment.mask = mask_[i];
     fragment.depth.z = depth_[i];

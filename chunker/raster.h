@@ -8,6 +8,7 @@
 #include "chunker/coverage.h"
 #include "chunker/draw_list.h"
 #include "chunker/fragment.h"
+#include "chunker/multipass.h"
 #include "chunker/shade_batch.h"
 #include "chunker/sprite.h"
 
@@ -16,7 +17,9 @@ namespace talisman::chunker {
 /// Working memory of one thread, about 300 kB, used for one chunk after the other.
 class ChunkRenderer {
  public:
-  ChunkRenderer(const DrawList& list, const RenderOptions& options) : list_(list), options_(options) {}
+  /// With `linear`, which is as large as the sprite, texels are left there and not encoded.
+  ChunkRenderer(const DrawList& list, const RenderOptions& options, LinearImage* linear = nullptr)
+      : list_(list), options_(options), linear_(linear) {}
 
   /// Draws `triangles` (ascending indices into the list) into the chunk whose first texel is `origin`. When
   /// the fragments do not fit the chunk is drawn again in quarters, each again in quarters, down to single
@@ -28,22 +31,30 @@ class ChunkRenderer {
 
  private:
   void draw_box(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out);
+  void finish_row(std::span<Float4> row, int x0, int y, Chunk& out) const;
+  void count_shading(const Shader& shader);
   void draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out);
   bool draw_triangles(std::span<const std::uint32_t> triangles, const LatticeBox& box);
+  DepthPlane plane_of(const Triangle& t, const Gradients& gradients, int x, int y) const {
+    const DepthPlane plane = depth_plane(t, gradients, x, y);
+    return options_.samples == 1 ? flattened(plane, kOnlySample) : plane;
+  }
   bool draw_triangle(std::uint32_t order, const LatticeBox& box);
   void gather_visible(const Triangle& t, const Gradients& gradients, const LatticeBox& box);
-  bool store_fragments(std::uint32_t order, const Gradients& gradients);
+  bool store_fragments(std::uint32_t order);
   bool add(int texel, const Fragment& fragment);
 
   const DrawList& list_;
   const RenderOptions& options_;
+  LinearImage* linear_ = nullptr;
   layers::ivec2 origin_{0, 0};
   FragmentBuffer buffer_;
   Coverage coverage_;
   ShadeBatch batch_;  ///< the visible texels of one triangle, and beside it
   std::array<std::uint16_t, ShadeBatch::kPoints> texel_;  ///< which they are,
   std::array<std::uint16_t, ShadeBatch::kPoints> mask_;   ///< their coverage,
-  std::array<float, ShadeBatch::kPoints> depth_;          ///< and their depth at the centre
+  std::array<float, ShadeBatch::kPoints> depth_;          ///< and their depth at the centre,
+  float depth_dx_ = 0, depth_dy_ = 0;                     ///< which changes like this
   RenderCounters counters_;
 };
 

@@ -4,6 +4,7 @@
 // seen in each, and how they add up.
 #include <algorithm>
 
+#include "chunker/coverage.h"
 #include "chunker/draw_list.h"
 #include "chunker/fragment.h"
 #include "chunker/reference.h"
@@ -54,20 +55,23 @@ Float4 composite_front_to_back(std::vector<Surface>& surfaces) {
   return sum.color;
 }
 
-Texel texel_at(const DrawList& list, int x, int y) {
+Texel texel_at(const DrawList& list, int samples_per_texel, int x, int y) {
   std::array<std::vector<Surface>, kSamples> surfaces;
   for (std::uint32_t order = 0; order < list.triangles.size(); ++order) {
     const Triangle& t = list.triangles[order];
-    const std::uint16_t mask = mask_of(t, x, y);
+    std::uint16_t mask = mask_of(t, x, y);
+    if (samples_per_texel != kSamples) mask = reduced_mask(mask, samples_per_texel);
     if (mask == 0) continue;
-    const DepthPlane plane = depth_plane(t, gradients_of(t), x, y);
+    DepthPlane plane = depth_plane(t, gradients_of(t), x, y);
+    if (samples_per_texel == 1) plane = flattened(plane, kOnlySample);
     const Float4 color = color_of(list, t, mask, x, y);
     for (int s = 0; s < kSamples; ++s)
       if (mask >> s & 1) surfaces[s].push_back({depth_at(plane, s), order, color});
   }
   std::array<Float4, kSamples> samples;
   for (int s = 0; s < kSamples; ++s) samples[s] = composite_front_to_back(surfaces[s]);
-  const Float4 mean = mean_of_samples(samples);
+  Float4 mean = mean_of_samples(samples);
+  finish_term(list.term, {&mean, 1});
   return encode({mean[0], mean[1], mean[2], mean[3]});
 }
 
@@ -75,16 +79,16 @@ Texel texel_at(const DrawList& list, int x, int y) {
 
 Sprite render(const PreparedScene& prepared, const layers::SceneFrame& frame, std::span<const int> parts,
               layers::ivec2 display_px, const layers::SpritePlacement& placement,
-              const RenderOptions& options, const ShadeInputs& /*inputs*/) {
+              const RenderOptions& options, const ShadeInputs& inputs) {
   DrawList list;
-  build_draw_list(prepared, frame, parts, display_px, placement, options, list);
+  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
   Sprite sprite(list.size_px);
   for (int row = 0; row < sprite.chunks().y; ++row)
     for (int column = 0; column < sprite.chunks().x; ++column) {
       Chunk chunk{};
       for (int i = 0; i < kChunkSize * kChunkSize; ++i) {
         const int x = column * kChunkSize + i % kChunkSize, y = row * kChunkSize + i / kChunkSize;
-        if (x < list.size_px.x && y < list.size_px.y) chunk.texels[i] = texel_at(list, x, y);
+        if (x < list.size_px.x && y < list.size_px.y) chunk.texels[i] = texel_at(list, options.samples, x, y);
       }
       sprite.store(column, row, chunk);
     }

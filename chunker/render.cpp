@@ -23,6 +23,8 @@ void check_options(const layers::SpritePlacement& placement, const RenderOptions
   TALISMAN_CHECK_LE(placement.size_px.y, kLargestSpritePx);
   TALISMAN_CHECK_GE(options.max_fragments_per_chunk, 16);
   TALISMAN_CHECK(options.merge_depth >= 0 && options.merge_color >= 0);
+  TALISMAN_CHECK(options.samples == 1 || options.samples == 4 || options.samples == 16);
+  TALISMAN_CHECK(options.max_anisotropy >= 1 && options.max_anisotropy <= 16);
 }
 
 std::vector<int> chunks_with_work(const Bins& bins) {
@@ -30,6 +32,27 @@ std::vector<int> chunks_with_work(const Bins& bins) {
   for (int c = 0; c + 1 < static_cast<int>(bins.first.size()); ++c)
     if (!bins.of(c).empty()) chunks.push_back(c);
   return chunks;
+}
+
+/// Draws every place in `places`; finished chunks go to `take(index of the place, chunk)`.
+template <typename Take>
+RenderCounters draw_chunks(const DrawList& list, const Bins& bins, const std::vector<int>& places,
+                           const RenderOptions& options, LinearImage* linear, const Take& take) {
+  tbb::enumerable_thread_specific<ChunkRenderer> renderers(
+      [&] { return ChunkRenderer(list, options, linear); });
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
+    ChunkRenderer& renderer = renderers.local();
+    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+      const layers::ivec2 origin(places[i] % bins.chunks.x * kChunkSize,
+                                 places[i] / bins.chunks.x * kChunkSize);
+      take(i, renderer.draw(bins.of(places[i]), origin));
+    }
+  });
+  RenderCounters counters;
+  for (const ChunkRenderer& renderer : renderers) counters += renderer.counters();
+  counters.polygons_in = list.polygons_in;
+  counters.polygons_drawn = static_cast<std::int64_t>(list.triangles.size());
+  return counters;
 }
 
 }  // namespace
@@ -56,7 +79,10 @@ PreparedScene::PreparedScene(const layers::Scene& scene) : impl_(std::make_uniqu
   impl_->pyramids.resize(scene.textures.size());
   std::vector<int> used;
   for (const layers::Part& part : scene.parts)
-    if (part.material >= 0) used.push_back(scene.materials[part.material].texture);
+    if (part.material >= 0) {
+      used.push_back(scene.materials[part.material].texture);
+      used.push_back(scene.materials[part.material].texture2);
+    }
   std::sort(used.begin(), used.end());
   used.erase(std::unique(used.begin(), used.end()), used.end());
   std::erase_if(used, [&](int t) { return t < 0 || t >= static_cast<int>(scene.textures.size()); });
@@ -80,30 +106,39 @@ std::int64_t PreparedScene::texture_bytes() const {
 RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& frame,
                     std::span<const int> parts, layers::ivec2 display_px,
                     const layers::SpritePlacement& placement, const RenderOptions& options,
-                    const ShadeInputs& /*inputs*/) {
+                    const ShadeInputs& inputs) {
   check_options(placement, options);
   DrawList list;
-  build_draw_list(prepared, frame, parts, display_px, placement, options, list);
+  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
   const Bins bins = bin_triangles(list.triangles, list.size_px);
   const std::vector<int> places = chunks_with_work(bins);
   std::vector<Chunk> chunks(places.size());
-  tbb::enumerable_thread_specific<ChunkRenderer> renderers([&] { return ChunkRenderer(list, options); });
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
-    ChunkRenderer& renderer = renderers.local();
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const layers::ivec2 origin(places[i] % bins.chunks.x * kChunkSize,
-                                 places[i] / bins.chunks.x * kChunkSize);
-      chunks[i] = renderer.draw(bins.of(places[i]), origin);
-    }
-  });
   RenderResult result;
-  for (const ChunkRenderer& renderer : renderers) result.counters += renderer.counters();
+  result.counters = draw_chunks(list, bins, places, options, nullptr,
+                                [&](std::size_t i, const Chunk& chunk) { chunks[i] = chunk; });
   result.sprite = Sprite::assemble(list.size_px, places, chunks);
-  result.counters.polygons_in = list.polygons_in;
-  result.counters.polygons_drawn = static_cast<std::int64_t>(list.triangles.size());
   result.counters.chunks_rendered = result.sprite.stored_chunks();
   result.counters.chunks_clear = result.sprite.clear_chunks();
   return result;
+}
+
+LinearImage render_linear(const PreparedScene& prepared, const layers::SceneFrame& frame,
+                          std::span<const int> parts, layers::ivec2 display_px,
+                          const layers::SpritePlacement& placement, const RenderOptions& options,
+                          const ShadeInputs& inputs) {
+  check_options(placement, options);
+  DrawList list;
+  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
+  const Bins bins = bin_triangles(list.triangles, list.size_px);
+  const std::vector<int> places = chunks_with_work(bins);
+  LinearImage image;
+  image.size_px = list.size_px;
+  image.texels.resize(static_cast<std::size_t>(list.size_px.x) * list.size_px.y);
+  image.counters = draw_chunks(list, bins, places, options, &image, [](std::size_t, const Chunk&) {});
+  image.counters.chunks_rendered = static_cast<std::int64_t>(places.size());
+  image.counters.chunks_clear =
+      static_cast<std::int64_t>(bins.first.size()) - 1 - image.counters.chunks_rendered;
+  return image;
 }
 
 }  // namespace talisman::chunker

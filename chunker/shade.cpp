@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chunker/shade.h"
 
+#include <cmath>
+
+#include "chunker/shadow_map.h"
 #include "layers/check.h"
 
 namespace talisman::chunker {
@@ -9,127 +12,220 @@ namespace {
 using layers::dvec3;
 using layers::vec3;
 
-bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
-const Pyramid* pyramid_of(const PreparedScene& prepared, const layers::Material& material) {
+const Pyramid* pyramid_of(const PreparedScene& prepared, int texture) {
   const auto& pyramids = prepared.impl().pyramids;
-  const int index = material.texture;
-  if (index < 0 || index >= static_cast<int>(pyramids.size()) || pyramids[index].empty()) return nullptr;
-  return &pyramids[index];
+  if (texture < 0 || texture >= static_cast<int>(pyramids.size()) || pyramids[texture].empty())
+    return nullptr;
+  return &pyramids[texture];
 }
 
-void choose_texture(const PreparedScene& prepared, const layers::Material& material, const layers::Mesh& mesh,
-                    Shader& shader) {
-  const Pyramid* pyramid = pyramid_of(prepared, material);
+/// T₁ for its colour, or where only coverage counts for its alpha.
+void choose_texture(const Pyramid* pyramid, bool has_uvs, bool colored, Shader& shader) {
   if (pyramid == nullptr) return;
   shader.opaque = shader.opaque && pyramid->opaque;
-  if (mesh.uvs.empty())
-    shader.texel = pyramid->mean();
-  else
+  if (!colored && pyramid->opaque) return;
+  if (has_uvs)
     shader.pyramid = pyramid;
+  else
+    shader.texel = pyramid->mean();
+}
+
+void choose_second_texture(const Pyramid* pyramid, bool has_uvs, float blend1, float blend2, Shader& shader) {
+  shader.two_textures = true;
+  shader.blend1 = blend1;
+  shader.blend2 = blend2;
+  if (has_uvs)
+    shader.pyramid2 = pyramid;
+  else
+    shader.texel2 = pyramid->mean();
+}
+
+void choose_textures(const PreparedScene& prepared, const layers::Material& material, bool has_uvs,
+                     ShadeTerm term, Shader& shader) {
+  const bool whole = term == ShadeTerm::Full || term == ShadeTerm::Base;
+  const Pyramid* second = pyramid_of(prepared, material.texture2);
+  choose_texture(pyramid_of(prepared, material.texture), has_uvs, whole || term == ShadeTerm::Texture1,
+                 shader);
+  if (second == nullptr) return;
+  if (whole)
+    choose_second_texture(second, has_uvs, clamp_unit(material.texture_blend.x),
+                          clamp_unit(material.texture_blend.y), shader);
+  else if (term == ShadeTerm::Texture2)
+    choose_second_texture(second, has_uvs, 0, 1, shader);
+}
+
+/// Does the part show anything in this term, apart from hiding what is behind it?
+bool contributes(const Shader& shader, const layers::Material& material, ShadeTerm term) {
+  switch (term) {
+    case ShadeTerm::Full:
+    case ShadeTerm::Base:
+    case ShadeTerm::Texture1:
+      return true;
+    case ShadeTerm::Texture2:
+      return shader.two_textures;
+    case ShadeTerm::Shadow:
+      return !material.unlit && !shader.lights->ambient_only() && shader.lights->shadows > 0;
+    case ShadeTerm::Specular:
+      return !material.unlit && !shader.lights->ambient_only() && material.specular != vec3(0, 0, 0);
+    case ShadeTerm::Reflection:
+      return shader.reflection != nullptr;
+  }
+  return true;
+}
+
+void choose_reflection(const layers::Material& material, ShadeTerm term, const ReflectionLookup* lookup,
+                       Shader& shader) {
+  if (lookup == nullptr || lookup->sprite == nullptr || material.unlit) return;
+  if (term != ShadeTerm::Full && term != ShadeTerm::Reflection) return;
+  shader.reflectivity = clamp_unit(material.reflectivity);
+  if (shader.reflectivity > 0) shader.reflection = lookup;
+}
+
+void choose_lighting(const layers::Material& material, bool has_normals, const RenderOptions& options,
+                     ShadeTerm term, Shader& shader) {
+  const bool full = term == ShadeTerm::Full;
+  shader.lit = !shader.lights->ambient_only() && term != ShadeTerm::Reflection;
+  if (!shader.lit) shader.base *= shader.lights->ambient;
+  if (term != ShadeTerm::Texture2) shader.emissive = float4(material.emissive);
+  shader.specular = float4(material.specular);
+  shader.shininess = material.shininess > 0 ? material.shininess : 0;
+  shader.has_specular =
+      shader.lit && (full || term == ShadeTerm::Specular) && material.specular != vec3(0, 0, 0);
+  // Faces without vertex normals have only their own: there is nothing to interpolate.
+  shader.per_pixel = shader.lit && options.shading == Shading::Phong && has_normals;
+  shader.shadowed =
+      shader.lit && shader.lights->shadows > 0 && (full || term == ShadeTerm::Shadow || shader.has_specular);
+  shader.shadow_term = term == ShadeTerm::Shadow;
 }
 
 AttributeLayout choose_layout(const Shader& shader, bool vertex_colors) {
   AttributeLayout layout;
   const auto next = [&layout] { return layout.count++; };
-  if (shader.pyramid) layout.uv = next();
+  if (shader.textured()) layout.uv = next();
   if (vertex_colors || (shader.lit && !shader.per_pixel)) layout.color = next();
   if (shader.has_specular && !shader.per_pixel) layout.specular = next();
   if (shader.per_pixel) layout.normal = next();
-  if (shader.per_pixel && (shader.has_specular || !shader.lights->point.empty())) layout.position = next();
+  if (shader.shadowed || (shader.per_pixel && (shader.has_specular || !shader.lights->local_empty())))
+    layout.position = next();
+  if (shader.shadowed && !shader.per_pixel) layout.share = next();
+  if (shader.shadowed && !shader.per_pixel && shader.has_specular) layout.specular_share = next();
   return layout;
 }
 
 /// One light's share: `to_light` of unit length.
-void add_light(const Shader& shader, Float4 normal, Float4 to_eye, Float4 to_light, Float4 color,
-               Lighting& sum) {
+void add_light(const Shader& shader, Float4 normal, Float4 to_eye, Float4 to_light, Float4 color, int shadow,
+               Lighting& sum, Shadowing& shadowing) {
   const float facing = dot3(normal, to_light);
   if (!(facing > 0)) return;
-  sum.diffuse += color * splat(facing);
+  const Float4 diffuse = color * splat(facing);
+  sum.diffuse += diffuse;
+  if (shadow >= 0) shadowing.diffuse[shadow] = luminance(diffuse);
   if (!shader.has_specular) return;
   const float lobe = dot3(normal, normalized3(to_light + to_eye));
-  sum.specular += color * shader.specular * splat(power_of_unit(lobe, shader.shininess));
+  Float4 specular = color * shader.specular * splat(power_of_unit(lobe, shader.shininess));
+  if (shadow >= 0) {
+    shadowing.specular[shadow] = luminance(specular);
+    specular *= splat(shadowing.visibility[shadow]);
+  }
+  sum.specular += specular;
 }
 
-Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at) {
-  if (shader.pyramid == nullptr) return shader.texel;
+void add_spot(const Shader& shader, Float4 normal, Float4 to_eye, Float4 position,
+              const LightSet::Spot& source, Lighting& sum, Shadowing& shadowing) {
+  const Float4 to_light = normalized3(source.position - position);
+  const float t = clamp_unit((-dot3(source.axis, to_light) - source.cos_outer) * source.inverse_width);
+  const float falloff = (t * t) * (3 - 2 * t);
+  add_light(shader, normal, to_eye, to_light, source.color * splat(falloff), source.shadow, sum, shadowing);
+}
+
+Float4 look_up(const Shader& shader, const Pyramid& pyramid, const Interpolator& t, const Lambda& at,
+               int& samples) {
   const int uv = shader.layout.uv;
   const Float4 coordinate = attribute(t, at, uv);
-  const Pyramid& pyramid = *shader.pyramid;
-  if (!shader.mipmaps) return bilinear(pyramid.levels[0], coordinate[0], coordinate[1]);
-  return trilinear(pyramid, coordinate[0], coordinate[1], texture_footprint(t, at, uv, pyramid.levels[0]));
+  const float u = coordinate[0], v = coordinate[1];
+  const MipLevel& finest = pyramid.levels[0];
+  if (shader.mipmaps && shader.filter == TextureFilter::Trilinear) {
+    const TextureDerivatives derivatives = texture_derivatives(t, at, uv, finest);
+    if (shader.max_anisotropy > 1)
+      return anisotropic(pyramid, u, v, derivatives, shader.max_anisotropy, samples);
+    ++samples;
+    return trilinear(pyramid, u, v, footprint_of(derivatives));
+  }
+  ++samples;
+  return shader.filter == TextureFilter::Nearest ? nearest(finest, u, v) : bilinear(finest, u, v);
 }
 
+/// Shares of each map's light in `whole`.
+Float4 shares(Float4 parts, float whole) { return whole > 0 ? parts * splat(1 / whole) : splat(0); }
+
 /// Diffuse (times base and vertex colour) and specular at a pixel.
-Lighting lighting_at(const Shader& shader, const Interpolator& t, const Lambda& at) {
+Lighting lighting_at(const Shader& shader, const Interpolator& t, const Lambda& at, Float4 visibility) {
+  if (!shader.per_pixel) return interpolated_lighting(shader, t, at, visibility);
   const AttributeLayout& layout = shader.layout;
   const Float4 color = layout.color >= 0 ? attribute(t, at, layout.color) : shader.base;
-  if (!shader.per_pixel) return {color, layout.specular >= 0 ? attribute(t, at, layout.specular) : splat(0)};
   const Float4 normal = normalized3(attribute(t, at, layout.normal));
   const Float4 position = layout.position >= 0 ? attribute(t, at, layout.position) : splat(0);
-  const Lighting lighting = light(shader, normal, position);
-  return {color * lighting.diffuse, lighting.specular};
+  Shadowing shadowing{visibility};
+  Lighting lighting = light(shader, normal, position, shadowing);
+  if (shader.shadowed)
+    lighting.shadow = shadow_product(shares(shadowing.diffuse, luminance(lighting.diffuse)), visibility,
+                                     shader.lights->shadows);
+  return {color * lighting.diffuse, lighting.specular, lighting.shadow};
+}
+
+/// Linear 0 … 1; clear outside.
+Float4 decoded(const Sprite& sprite, int x, int y) {
+  const Linear16 c = decode(sprite.texel(x, y));
+  return Float4{static_cast<float>(c.r), static_cast<float>(c.g), static_cast<float>(c.b),
+                static_cast<float>(c.a)} *
+         splat(1.0f / static_cast<float>(kOne));
 }
 
 }  // namespace
 
-LightSet light_set(const layers::SceneFrame& frame) {
-  const dvec3 eye(frame.camera.world_from_camera[3]);
-  LightSet set;
-  for (const layers::LightState& light : frame.lights) {
-    if (!finite(light.position) || !finite(light.direction) || !finite(dvec3(light.color))) continue;
-    const Float4 color = float4(light.color);
-    switch (light.kind) {
-      case layers::Light::Kind::Ambient:
-        set.ambient += color;
-        break;
-      case layers::Light::Kind::Directional:
-        set.directional.push_back({normalized3(float4(vec3(-light.direction))), color});
-        break;
-      case layers::Light::Kind::Spot:
-      case layers::Light::Kind::Point:
-        set.point.push_back({float4(vec3(light.position - eye)), color});
-        break;
-    }
-  }
-  return set;
-}
-
 Shader make_shader(const PreparedScene& prepared, const layers::Part& part, const LightSet& lights,
-                   const RenderOptions& options) {
+                   const RenderOptions& options, const ShadeInputs& inputs,
+                   const ReflectionLookup* reflection) {
   const layers::Scene& scene = prepared.scene();
   static const layers::Material plain;
   const layers::Material& material = part.material >= 0 ? scene.materials[part.material] : plain;
   const layers::Mesh& mesh = scene.meshes[part.mesh];
   Shader shader;
   shader.lights = &lights;
-  shader.mipmaps = options.mipmaps;
+  shader.mipmaps = options.mipmaps && options.filter == TextureFilter::Trilinear;
+  shader.filter = options.filter;
+  shader.max_anisotropy = shader.mipmaps ? options.max_anisotropy : 1;
   shader.opacity = clamp_unit(material.opacity);
   shader.opaque = shader.opacity == 1;
-  choose_texture(prepared, material, mesh, shader);
-  shader.base = float4(material.base_color, 1);
-  if (!material.unlit) {
-    shader.lit = !lights.ambient_only();
-    if (!shader.lit) shader.base *= lights.ambient;
-    shader.emissive = float4(material.emissive);
-    shader.specular = float4(material.specular);
-    shader.shininess = material.shininess > 0 ? material.shininess : 0;
-    shader.has_specular = shader.lit && material.specular != vec3(0, 0, 0);
-    // Faces without vertex normals have only their own: there is nothing to interpolate.
-    shader.per_pixel = shader.lit && options.shading == Shading::Phong && !mesh.normals.empty();
-  }
-  shader.layout = choose_layout(shader, !mesh.colors.empty());
+  choose_textures(prepared, material, !mesh.uvs.empty(), inputs.term, shader);
+  choose_reflection(material, inputs.term, reflection, shader);
+  const bool shown = contributes(shader, material, inputs.term);
+  const bool colored = shown && inputs.term != ShadeTerm::Shadow && inputs.term != ShadeTerm::Specular &&
+                       inputs.term != ShadeTerm::Reflection;
+  shader.base = colored ? float4(material.base_color, 1) : Float4{0, 0, 0, 1};
+  if (shown && !material.unlit)
+    choose_lighting(material, !mesh.normals.empty(), options, inputs.term, shader);
+  if (!colored) shader.emissive = splat(0);
+  shader.layout = choose_layout(shader, colored && !mesh.colors.empty());
   TALISMAN_CHECK_LE(shader.layout.count, kMaxAttributes);
   return shader;
 }
 
 Lighting light(const Shader& shader, Float4 normal, Float4 position) {
+  Shadowing shadowing;
+  return light(shader, normal, position, shadowing);
+}
+
+Lighting light(const Shader& shader, Float4 normal, Float4 position, Shadowing& shadowing) {
   Lighting sum{shader.lights->ambient, splat(0)};
   const Float4 to_eye = shader.has_specular ? normalized3(-position) : splat(0);
   for (const auto& source : shader.lights->directional)
-    add_light(shader, normal, to_eye, source.to_light, source.color, sum);
+    add_light(shader, normal, to_eye, source.to_light, source.color, source.shadow, sum, shadowing);
   for (const auto& source : shader.lights->point)
-    add_light(shader, normal, to_eye, normalized3(source.position - position), source.color, sum);
+    add_light(shader, normal, to_eye, normalized3(source.position - position), source.color, source.shadow,
+              sum, shadowing);
+  for (const auto& source : shader.lights->spot)
+    add_spot(shader, normal, to_eye, position, source, sum, shadowing);
   return sum;
 }
 
@@ -138,18 +234,91 @@ void write_attributes(const Shader& shader, const ShadePoint& point, Float4* att
   if (layout.uv >= 0) attributes[layout.uv] = point.uv;
   Float4 color = shader.base * point.vertex_color;
   if (shader.lit && !shader.per_pixel) {
-    const Lighting lighting = light(shader, point.normal, point.position);
+    Shadowing shadowing;
+    const Lighting lighting = light(shader, point.normal, point.lit_at, shadowing);
     color *= lighting.diffuse;
     if (layout.specular >= 0) attributes[layout.specular] = lighting.specular;
+    if (layout.share >= 0) attributes[layout.share] = shares(shadowing.diffuse, luminance(lighting.diffuse));
+    if (layout.specular_share >= 0)
+      attributes[layout.specular_share] = shares(shadowing.specular, luminance(lighting.specular));
   }
   if (layout.color >= 0) attributes[layout.color] = color;
   if (layout.normal >= 0) attributes[layout.normal] = point.normal;
   if (layout.position >= 0) attributes[layout.position] = point.position;
 }
 
+Float4 visibility_at(const LightSet& lights, Float4 position) {
+  const dvec3 world = lights.eye + dvec3(position[0], position[1], position[2]);
+  Float4 visibility = splat(1);
+  for (int k = 0; k < lights.shadows; ++k) visibility[k] = lights.shadow_maps[k]->visibility(world);
+  return visibility;
+}
+
+Float4 reflection_at(const ReflectionLookup& lookup, const Interpolator& t, float dx, float dy) {
+  const layers::dvec2 p = lookup.reflection_from_sprite(
+      {static_cast<double>(t.corner_x) + dx, static_cast<double>(t.corner_y) + dy});
+  const layers::ivec2 size = lookup.sprite->size_px();
+  if (!(p.x > -1 && p.y > -1 && p.x < size.x + 1 && p.y < size.y + 1)) return splat(0);
+  const float x = static_cast<float>(p.x) - 0.5f, y = static_cast<float>(p.y) - 0.5f;
+  const int column = floor_to_int(x), row = floor_to_int(y);
+  const float across = x - static_cast<float>(column), down = y - static_cast<float>(row);
+  const auto texel = [&](int i, int j) { return decoded(*lookup.sprite, column + i, row + j); };
+  return mix(mix(texel(0, 0), texel(1, 0), across), mix(texel(0, 1), texel(1, 1), across), down);
+}
+
+Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples) {
+  const Float4 first =
+      shader.pyramid != nullptr ? look_up(shader, *shader.pyramid, t, at, samples) : shader.texel;
+  if (!shader.two_textures) return first;
+  const Float4 second =
+      shader.pyramid2 != nullptr ? look_up(shader, *shader.pyramid2, t, at, samples) : shader.texel2;
+  Float4 color = first * splat(shader.blend1) + second * splat(shader.blend2 * first[3]);
+  color[3] = first[3];
+  return color;
+}
+
+Lighting interpolated_lighting(const Shader& shader, const Interpolator& t, const Lambda& at,
+                               Float4 visibility) {
+  const AttributeLayout& layout = shader.layout;
+  Lighting lighting{layout.color >= 0 ? attribute(t, at, layout.color) : shader.base,
+                    layout.specular >= 0 ? attribute(t, at, layout.specular) : splat(0)};
+  if (!shader.shadowed) return lighting;
+  lighting.shadow = shadow_product(attribute(t, at, layout.share), visibility, shader.lights->shadows);
+  if (layout.specular_share < 0) return lighting;
+  const Float4 taken = attribute(t, at, layout.specular_share) * (splat(1) - visibility);
+  float left = 1;
+  for (int k = 0; k < shader.lights->shadows; ++k) left -= taken[k];
+  lighting.specular *= splat(clamp_unit(left));
+  return lighting;
+}
+
 Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy) {
   const Lambda at = lambda_at(t, dx, dy);
-  return combined(shader, texel_at(shader, t, at), lighting_at(shader, t, at));
+  int samples = 0;
+  const Float4 texel = texel_at(shader, t, at, samples);
+  if (!shader.extended()) return combined(shader, texel, lighting_at(shader, t, at, splat(1)));
+  const Float4 visibility =
+      shader.shadowed ? visibility_at(*shader.lights, attribute(t, at, shader.layout.position)) : splat(1);
+  const Float4 reflection =
+      shader.reflection != nullptr ? reflection_at(*shader.reflection, t, dx, dy) : splat(0);
+  return combined(shader, texel, lighting_at(shader, t, at, visibility), reflection);
+}
+
+void finish_term(ShadeTerm term, std::span<Float4> texels) {
+  switch (term) {
+    case ShadeTerm::Full:
+    case ShadeTerm::Base:
+    case ShadeTerm::Texture1:
+      return;
+    case ShadeTerm::Shadow:
+      for (Float4& texel : texels) texel = Float4{0, 0, 0, texel[0]};
+      return;
+    case ShadeTerm::Specular:
+    case ShadeTerm::Reflection:
+    case ShadeTerm::Texture2:
+      for (Float4& texel : texels) texel[3] = 0;
+      return;
+  }
 }
 
 }  // namespace talisman::chunker

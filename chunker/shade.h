@@ -8,13 +8,34 @@
 ///   colour   = α · (base · vertex colour · diffuse · texel + α_texel · (specular + emissive)),  α = opacity
 ///   · α_texel
 ///
-/// The texel is premultiplied, so the colour is too. Lights do not fall off with distance. Unlit surfaces
+/// The texel is premultiplied, so the colour is too. Lights do not fall off with distance; a spot's colour is
+/// scaled by t²(3 - 2t), t = (cos θ - cos outer) / (cos inner - cos outer) clamped to 0 … 1. Unlit surfaces
 /// have diffuse = 1 and nothing else. Values above 1 are kept until a texel is encoded.
+///
+/// With a second texture the texel is k₁ T₁ + k₂ α₁ T₂ (alpha that of T₁) [LS97 2.3].
+///
+/// Shadows and reflections, where they are called for:
+///
+///   s_l   = 1 - share_l · (1 - v_l),   share_l = Y(diffuse of light l) / Y(all diffuse, ambient included)
+///   B     = base · vertex colour · diffuse · texel + α_texel · emissive
+///   Full  = α · (B · Π s_l + α_texel · (Σ specular_l · v_l + reflectivity · reflection))
+///
+/// v: visibility of the light from the point (chunker/shadow_map.h), Y: luminance. s is the share of light
+/// that is left when light l is blocked, so ambient light stays in the shadow, and where a light does not
+/// shine anyway (N·L ≤ 0, outside a cone) its share is 0 and nothing is darkened twice. It is one number for
+/// three channels, as a black sprite with alpha demands: exact for lights of one hue; and emission darkens
+/// with the rest of B. Flat and Gouraud shading interpolate the shares, and attenuate the highlights of all
+/// lights together by their shares of luminance.
+///
+/// While a term is drawn that is not a colour over coverage, a fragment's alpha still is the surface's own
+/// alpha, so that visibility is the same in every term; the shadow's (1 - Π s) α stands in red, and only the
+/// resolved texel is turned into what the sprite holds.
 ///
 /// A `Shader` is one part's material and lights, reduced to what this part needs: it says which attributes
 /// its vertices carry, and an attribute that the material does not use is neither stored nor interpolated.
 /// Flat shading evaluates the formula once per triangle, Gouraud once per vertex, Phong once per pixel.
 
+#include <array>
 #include <vector>
 
 #include "chunker/float4.h"
@@ -28,19 +49,40 @@ struct LightSet {
   struct Directional {
     Float4 to_light;
     Float4 color;
+    int shadow = -1;  ///< index of its map among `shadow_maps`; -1: it casts no shadow
   };
   struct Point {
     Float4 position;
     Float4 color;
+    int shadow = -1;
+  };
+  struct Spot {
+    Float4 position;
+    Float4 color;
+    Float4 axis;  ///< the way the light travels, unit length
+    float cos_outer = 0, inverse_width = 1;
+    int shadow = -1;
   };
   Float4 ambient{0, 0, 0, 0};
   std::vector<Directional> directional;
   std::vector<Point> point;
-  bool ambient_only() const { return directional.empty() && point.empty(); }
+  std::vector<Spot> spot;
+  std::array<const ShadowMap*, layers::kMaxShadowLights> shadow_maps{};
+  int shadows = 0;             ///< maps in use
+  layers::dvec3 eye{0, 0, 0};  ///< world
+  bool ambient_only() const { return directional.empty() && local_empty(); }
+  bool local_empty() const { return point.empty() && spot.empty(); }
 };
 
-/// Lights that are not finite are left out.
-LightSet light_set(const layers::SceneFrame& frame);
+/// The lights that `inputs.term` asks for, and their maps. Lights that are not finite are left out; so are
+/// maps that are empty.
+LightSet light_set(const layers::SceneFrame& frame, const ShadeInputs& inputs = {});
+
+/// Where a reflection is looked up.
+struct ReflectionLookup {
+  const Sprite* sprite = nullptr;
+  layers::Affine2 reflection_from_sprite;  ///< from the sprite that is drawn
+};
 
 /// Vertex attributes take one Float4 each; -1: not carried.
 struct AttributeLayout {
@@ -48,16 +90,23 @@ struct AttributeLayout {
   int color = -1;     ///< base · vertex colour (Phong), or base · vertex colour · diffuse (Flat, Gouraud)
   int specular = -1;  ///< Flat, Gouraud
   int normal = -1;    ///< Phong
-  int position = -1;  ///< Phong, relative to the eye
+  int position = -1;  ///< Phong, relative to the eye; all shadings where shadows are looked up
+  int share = -1;     ///< Flat, Gouraud with shadows: shares of diffuse light, one channel per map
+  int specular_share = -1;  ///< the same of the highlights
   int count = 0;
 };
-inline constexpr int kMaxAttributes = 5;
+inline constexpr int kMaxAttributes = 6;
 
 struct Shader {
   AttributeLayout layout;
   const LightSet* lights = nullptr;
   const Pyramid* pyramid = nullptr;  ///< null: `texel` everywhere
   Float4 texel{1, 1, 1, 1};          ///< where there is no pyramid
+  const Pyramid* pyramid2 = nullptr;
+  Float4 texel2{0, 0, 0, 0};
+  float blend1 = 1, blend2 = 0;
+  const ReflectionLookup* reflection = nullptr;  ///< null: none
+  float reflectivity = 0;
   Float4 base{1, 1, 1, 1};
   Float4 specular{0, 0, 0, 0};
   Float4 emissive{0, 0, 0, 0};
@@ -67,24 +116,61 @@ struct Shader {
   bool lit = false;        ///< the lights are evaluated: neither unlit nor ambient only
   bool per_pixel = false;  ///< Phong
   bool has_specular = false;
-  bool opaque = true;  ///< alpha is exactly 1 at every pixel
+  bool opaque = true;        ///< alpha is exactly 1 at every pixel
+  bool shadowed = false;     ///< shadow maps are looked up
+  bool shadow_term = false;  ///< the colour is (1 - Π s) α in red
+  bool two_textures = false;
+  TextureFilter filter = TextureFilter::Trilinear;
+  int max_anisotropy = 1;
+  /// Texels are looked up point by point: what only some scenes ask for is not worth lanes.
+  bool scalar_texels() const {
+    return two_textures || max_anisotropy > 1 || filter == TextureFilter::Nearest;
+  }
+  bool textured() const { return pyramid != nullptr || pyramid2 != nullptr; }
+  bool extended() const { return shadowed || reflection != nullptr; }
 };
 
+/// The shader of what `inputs.term` shows of a part. A part that does not contribute to the term gets a black
+/// one that only hides what is behind it.
 Shader make_shader(const PreparedScene& prepared, const layers::Part& part, const LightSet& lights,
-                   const RenderOptions& options);
+                   const RenderOptions& options, const ShadeInputs& inputs = {},
+                   const ReflectionLookup* reflection = nullptr);
 
 struct Lighting {
   Float4 diffuse;
   Float4 specular;
+  float shadow = 1;  ///< Π s
 };
+
+/// What shadow maps say, one channel per map, and how much light they can take away.
+struct Shadowing {
+  Float4 visibility{1, 1, 1, 1};
+  Float4 diffuse{0, 0, 0, 0};   ///< luminance of the diffuse light of each map's light
+  Float4 specular{0, 0, 0, 0};  ///< and of its highlight
+};
+
+inline constexpr float kLuminance[3] = {0.2126f, 0.7152f, 0.0722f};
+inline float luminance(Float4 c) {
+  return (c[0] * kLuminance[0] + c[1] * kLuminance[1]) + c[2] * kLuminance[2];
+}
+
+/// Π s over `count` maps.
+inline float shadow_product(Float4 share, Float4 visibility, int count) {
+  float product = 1;
+  for (int k = 0; k < count; ++k) product = product * (1 - share[k] * (1 - visibility[k]));
+  return product;
+}
 
 /// `normal` of unit length (or zero: ambient light only), `position` relative to the eye.
 Lighting light(const Shader& shader, Float4 normal, Float4 position);
+/// The same with shadows: highlights are attenuated by `shadowing.visibility`, and the luminances filled in.
+Lighting light(const Shader& shader, Float4 normal, Float4 position, Shadowing& shadowing);
 
 /// What is known of one vertex (or, flat, of one triangle's corner) before its attributes are written.
 struct ShadePoint {
   Float4 normal{0, 0, 0, 0};
-  Float4 position{0, 0, 0, 0};
+  Float4 position{0, 0, 0, 0};  ///< where it is
+  Float4 lit_at{0, 0, 0, 0};    ///< where light is evaluated: there, or (flat) at the triangle's centre
   Float4 vertex_color{1, 1, 1, 1};
   Float4 uv{0, 0, 0, 0};
 };
@@ -99,6 +185,7 @@ void write_attributes(const Shader& shader, const ShadePoint& point, Float4* att
 struct Interpolator {
   float q1x, q1y, q2x, q2y;
   float s0, sx, sy;
+  float corner_x, corner_y;  ///< of the first corner on the sprite, texels
   Float4 a0[kMaxAttributes], d1[kMaxAttributes], d2[kMaxAttributes];
 };
 
@@ -119,25 +206,54 @@ inline Float4 attribute(const Interpolator& t, const Lambda& at, int index) {
   return t.a0[index] + t.d1[index] * splat(at.one) + t.d2[index] * splat(at.two);
 }
 
-/// Squared length, in texels of level 0, of the longer of the two screen derivatives of (u, v).
-inline float texture_footprint(const Interpolator& t, const Lambda& at, int uv, const MipLevel& finest) {
+/// The two screen derivatives of (u, v) in texels of level 0.
+inline TextureDerivatives texture_derivatives(const Interpolator& t, const Lambda& at, int uv,
+                                              const MipLevel& finest) {
   const float one_x = (t.q1x - at.one * t.sx) * at.inverse_s, one_y = (t.q1y - at.one * t.sy) * at.inverse_s;
   const float two_x = (t.q2x - at.two * t.sx) * at.inverse_s, two_y = (t.q2y - at.two * t.sy) * at.inverse_s;
   const Float4 texels{static_cast<float>(finest.width), static_cast<float>(finest.height), 0, 0};
   const Float4 x = (t.d1[uv] * splat(one_x) + t.d2[uv] * splat(two_x)) * texels;
   const Float4 y = (t.d1[uv] * splat(one_y) + t.d2[uv] * splat(two_y)) * texels;
-  return std::max(x[0] * x[0] + x[1] * x[1], y[0] * y[0] + y[1] * y[1]);
+  return {x, y};
 }
 
-/// The last line of the formula on top.
+/// The last line of the first formula on top.
 inline Float4 combined(const Shader& shader, Float4 texel, const Lighting& lighting) {
   Float4 color = lighting.diffuse * texel + (lighting.specular + shader.emissive) * splat(texel[3]);
   color[3] = texel[3];
   return color * splat(shader.opacity);
 }
 
+/// The lines after it, for shaders that are extended().
+inline Float4 combined(const Shader& shader, Float4 texel, const Lighting& lighting, Float4 reflection) {
+  const Float4 alpha = splat(texel[3]);
+  if (shader.shadow_term)
+    return Float4{(1 - lighting.shadow) * texel[3], 0, 0, texel[3]} * splat(shader.opacity);
+  Float4 color = (lighting.diffuse * texel + shader.emissive * alpha) * splat(lighting.shadow);
+  color += (lighting.specular + reflection * splat(shader.reflectivity)) * alpha;
+  color[3] = texel[3];
+  return color * splat(shader.opacity);
+}
+
+/// Visibility of the lights that have maps, at `position` relative to the eye.
+Float4 visibility_at(const LightSet& lights, Float4 position);
+
+/// The reflection at (dx, dy) texels from the triangle's first corner; clear outside of it.
+Float4 reflection_at(const ReflectionLookup& lookup, const Interpolator& t, float dx, float dy);
+
+/// The texel at a point; `samples` is increased by the filtered look-ups it took.
+Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples);
+
+/// Lighting of Flat and Gouraud shading at a point: interpolated. `visibility` counts for shadowed shaders.
+Lighting interpolated_lighting(const Shader& shader, const Interpolator& t, const Lambda& at,
+                               Float4 visibility);
+
 /// Premultiplied colour at (dx, dy) texels from the triangle's first corner: the definition of what
 /// shade_batch does.
 Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy);
+
+/// Turns resolved texels into what a sprite of this term holds: colour over coverage stays as it is, what is
+/// added has alpha 0, and the shadow's alpha comes out of red.
+void finish_term(ShadeTerm term, std::span<Float4> texels);
 
 }  // namespace talisman::chunker

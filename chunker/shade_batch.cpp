@@ -32,6 +32,9 @@ struct ShadeBlock {
   alignas(64) BlockRow level_share;  ///< of the coarser one; 0: it is not needed
   BlockTaps fine, coarse;
   alignas(64) std::array<BlockRow, 3> diffuse, specular;  ///< Phong only
+  /// Where shadows are looked up: what the maps say, and Π s.
+  alignas(64) std::array<BlockRow, layers::kMaxShadowLights> visibility;
+  alignas(64) BlockRow shadow;
 };
 
 }  // namespace talisman::chunker
@@ -194,7 +197,7 @@ void Interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block)
     const Vec two = clamped(hn::Mul(plane(t.q2x, dx, t.q2y, dy), r));
     hn::Store(one, d, &block.one[i]);
     hn::Store(two, d, &block.two[i]);
-    if (uv < 0) continue;
+    if (uv < 0 || shader.scalar_texels()) continue;
     Vec footprint = set(0);
     if (shader.mipmaps) {
       const MipLevel& finest = shader.pyramid->levels[0];
@@ -220,18 +223,40 @@ struct Lit {
   Vec3 diffuse, specular;
 };
 
+HWY_INLINE Vec luminance_of(const Vec3& c) {
+  return hn::Add(hn::Add(hn::Mul(c.x, set(kLuminance[0])), hn::Mul(c.y, set(kLuminance[1]))),
+                 hn::Mul(c.z, set(kLuminance[2])));
+}
+
+/// The rows of one group of lanes in which add_light<true> finds visibilities and leaves luminances.
+struct ShadowRows {
+  const ShadeBlock* block = nullptr;
+  int first = 0;                                            ///< point of the first lane
+  alignas(64) float diffuse[layers::kMaxShadowLights][16];  ///< luminance of each map's light
+};
+
+template <bool kShadowed>
 HWY_INLINE void add_light(const Shader& shader, const Vec3& normal, const Vec3& to_eye, const Vec3& to_light,
-                          Float4 color, Lit& lit) {
+                          const Vec3& color, [[maybe_unused]] int shadow, Lit& lit,
+                          [[maybe_unused]] ShadowRows& rows) {
   const Vec facing = dot(normal, to_light);
   const auto lit_side = hn::Gt(facing, set(0));
   if (hn::AllFalse(Floats(), lit_side)) return;
-  const Vec3 diffuse = sum(lit.diffuse, scaled(set3(color), facing));
+  const Vec3 own = scaled(color, facing);
+  const Vec3 diffuse = sum(lit.diffuse, own);
+  if constexpr (kShadowed)
+    if (shadow >= 0)
+      hn::Store(hn::IfThenElseZero(lit_side, luminance_of(own)), Floats(), rows.diffuse[shadow]);
   lit.diffuse = {hn::IfThenElse(lit_side, diffuse.x, lit.diffuse.x),
                  hn::IfThenElse(lit_side, diffuse.y, lit.diffuse.y),
                  hn::IfThenElse(lit_side, diffuse.z, lit.diffuse.z)};
   if (!shader.has_specular) return;
   const Vec lobe = lobes(dot(normal, unit(sum(to_light, to_eye))), shader.shininess);
-  const Vec3 specular = sum(lit.specular, scaled(product(set3(color), set3(shader.specular)), lobe));
+  Vec3 highlight = scaled(product(color, set3(shader.specular)), lobe);
+  if constexpr (kShadowed)
+    if (shadow >= 0)
+      highlight = scaled(highlight, hn::Load(Floats(), &rows.block->visibility[shadow][rows.first]));
+  const Vec3 specular = sum(lit.specular, highlight);
   lit.specular = {hn::IfThenElse(lit_side, specular.x, lit.specular.x),
                   hn::IfThenElse(lit_side, specular.y, lit.specular.y),
                   hn::IfThenElse(lit_side, specular.z, lit.specular.z)};
@@ -243,9 +268,36 @@ HWY_INLINE void store3(const Vec3& v, std::array<BlockRow, 3>& rows, int i) {
   hn::Store(v.z, Floats(), &rows[2][i]);
 }
 
-/// light() at every point.
-void LightPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+/// The colour of a spot at points from which it lies in the direction `to_light`.
+HWY_INLINE Vec3 spot_color(const LightSet::Spot& source, const Vec3& to_light) {
+  const Vec cosine = hn::Neg(dot(set3(source.axis), to_light));
+  const Vec t = clamped(hn::Mul(hn::Sub(cosine, set(source.cos_outer)), set(source.inverse_width)));
+  const Vec falloff = hn::Mul(hn::Mul(t, t), hn::Sub(set(3), hn::Mul(set(2), t)));
+  return scaled(set3(source.color), falloff);
+}
+
+/// shadow_product() of the lights' shares.
+HWY_INLINE void store_shadow(const LightSet& lights, const Lit& lit, const ShadowRows& rows,
+                             ShadeBlock& block) {
   const Floats d;
+  const Vec whole = luminance_of(lit.diffuse);
+  const auto some = hn::Gt(whole, set(0));
+  const Vec r = hn::Div(set(1), whole);
+  Vec left = set(1);
+  for (int k = 0; k < lights.shadows; ++k) {
+    const Vec share = hn::IfThenElseZero(some, hn::Mul(hn::Load(d, rows.diffuse[k]), r));
+    const Vec blocked = hn::Sub(set(1), hn::Load(d, &block.visibility[k][rows.first]));
+    left = hn::Mul(left, hn::Sub(set(1), hn::Mul(share, blocked)));
+  }
+  hn::Store(left, d, &block.shadow[rows.first]);
+}
+
+/// light() at every point.
+template <bool kShadowed>
+HWY_INLINE void light_points(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  const Floats d;
+  ShadowRows rows;
+  rows.block = &block;
   for (int i = 0; i < block.count; i += static_cast<int>(hn::Lanes(d))) {
     const Vec one = hn::Load(d, &block.one[i]), two = hn::Load(d, &block.two[i]);
     const Vec3 normal = unit(attribute3(t, shader.layout.normal, one, two));
@@ -255,14 +307,33 @@ void LightPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block)
     const Vec3 to_eye = shader.has_specular
                             ? unit(Vec3{hn::Neg(position.x), hn::Neg(position.y), hn::Neg(position.z)})
                             : nowhere;
+    if constexpr (kShadowed) {
+      rows.first = i;
+      for (auto& row : rows.diffuse) hn::Store(set(0), d, row);
+    }
     Lit lit{set3(shader.lights->ambient), nowhere};
     for (const auto& source : shader.lights->directional)
-      add_light(shader, normal, to_eye, set3(source.to_light), source.color, lit);
+      add_light<kShadowed>(shader, normal, to_eye, set3(source.to_light), set3(source.color), source.shadow,
+                           lit, rows);
     for (const auto& source : shader.lights->point)
-      add_light(shader, normal, to_eye, unit(minus(set3(source.position), position)), source.color, lit);
+      add_light<kShadowed>(shader, normal, to_eye, unit(minus(set3(source.position), position)),
+                           set3(source.color), source.shadow, lit, rows);
+    for (const auto& source : shader.lights->spot) {
+      const Vec3 to_light = unit(minus(set3(source.position), position));
+      add_light<kShadowed>(shader, normal, to_eye, to_light, spot_color(source, to_light), source.shadow, lit,
+                           rows);
+    }
     store3(lit.diffuse, block.diffuse, i);
     if (shader.has_specular) store3(lit.specular, block.specular, i);
+    if constexpr (kShadowed) store_shadow(*shader.lights, lit, rows, block);
   }
+}
+
+void LightPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  light_points<false>(shader, t, block);
+}
+void LightShadowedPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  light_points<true>(shader, t, block);
 }
 
 }  // namespace talisman::chunker::HWY_NAMESPACE
@@ -274,6 +345,7 @@ namespace {
 
 HWY_EXPORT(Interpolate);
 HWY_EXPORT(LightPoints);
+HWY_EXPORT(LightShadowedPoints);
 
 Float4 fetch(const MipLevel& level, const BlockTaps& taps, int i) {
   const Float4* texels = level.texels.data();
@@ -282,56 +354,99 @@ Float4 fetch(const MipLevel& level, const BlockTaps& taps, int i) {
   return mix(upper, lower, taps.y_share[i]);
 }
 
-template <bool kTextured>
-Float4 texel_of(const Shader& shader, const ShadeBlock& block, int i) {
-  if constexpr (!kTextured) return shader.texel;
+/// Where the texels of a block come from.
+enum class Texels { Constant, Taps, Looked };
+
+template <Texels kTexels>
+Float4 texel_of(const Shader& shader, const Interpolator& t, const ShadeBlock& block, int i, int& samples) {
+  if constexpr (kTexels == Texels::Constant) return shader.texel;
+  if constexpr (kTexels == Texels::Looked)
+    return texel_at(shader, t, lambda_at(t, block.dx[i], block.dy[i]), samples);
+  ++samples;
   const MipLevel* level = &shader.pyramid->levels[block.level[i]];
   const Float4 fine = fetch(level[0], block.fine, i);
   const float share = block.level_share[i];
   return share > 0 ? mix(fine, fetch(level[1], block.coarse, i), share) : fine;
 }
 
-template <bool kPerPixel>
+template <bool kPerPixel, bool kExtended>
 Lighting lighting_of(const Shader& shader, const Interpolator& t, const ShadeBlock& block, int i) {
-  const AttributeLayout& layout = shader.layout;
   const Lambda at{block.one[i], block.two[i], 0};
-  const Float4 color = layout.color >= 0 ? attribute(t, at, layout.color) : shader.base;
   if constexpr (kPerPixel) {
+    const Float4 color = shader.layout.color >= 0 ? attribute(t, at, shader.layout.color) : shader.base;
     const Float4 diffuse{block.diffuse[0][i], block.diffuse[1][i], block.diffuse[2][i], 0};
-    if (!shader.has_specular) return {color * diffuse, splat(0)};
-    return {color * diffuse, Float4{block.specular[0][i], block.specular[1][i], block.specular[2][i], 0}};
+    Lighting lighting{color * diffuse, splat(0)};
+    if (shader.has_specular)
+      lighting.specular = Float4{block.specular[0][i], block.specular[1][i], block.specular[2][i], 0};
+    if constexpr (kExtended) lighting.shadow = shader.shadowed ? block.shadow[i] : 1.0f;
+    return lighting;
   } else {
-    return {color, layout.specular >= 0 ? attribute(t, at, layout.specular) : splat(0)};
+    Float4 visibility = splat(1);
+    if constexpr (kExtended)
+      if (shader.shadowed)
+        for (int k = 0; k < layers::kMaxShadowLights; ++k) visibility[k] = block.visibility[k][i];
+    return interpolated_lighting(shader, t, at, visibility);
   }
 }
 
-template <bool kTextured, bool kPerPixel>
-void combine(const Shader& shader, const Interpolator& t, const ShadeBlock& block, Float4* color) {
-  for (int i = 0; i < block.count; ++i)
-    color[i] =
-        combined(shader, texel_of<kTextured>(shader, block, i), lighting_of<kPerPixel>(shader, t, block, i));
+template <Texels kTexels, bool kPerPixel, bool kExtended>
+int combine(const Shader& shader, const Interpolator& t, const ShadeBlock& block, Float4* color) {
+  int samples = 0;
+  for (int i = 0; i < block.count; ++i) {
+    const Float4 texel = texel_of<kTexels>(shader, t, block, i, samples);
+    const Lighting lighting = lighting_of<kPerPixel, kExtended>(shader, t, block, i);
+    if constexpr (kExtended) {
+      const Float4 reflection = shader.reflection != nullptr
+                                    ? reflection_at(*shader.reflection, t, block.dx[i], block.dy[i])
+                                    : splat(0);
+      color[i] = combined(shader, texel, lighting, reflection);
+    } else {
+      color[i] = combined(shader, texel, lighting);
+    }
+  }
+  return samples;
 }
 
-void shade_block(const Shader& shader, const Interpolator& t, ShadeBlock& block, Float4* color) {
-  HWY_DYNAMIC_DISPATCH(Interpolate)(shader, t, block);
-  const bool textured = shader.pyramid != nullptr;
-  if (shader.per_pixel) {
-    HWY_DYNAMIC_DISPATCH(LightPoints)(shader, t, block);
-    textured ? combine<true, true>(shader, t, block, color) : combine<false, true>(shader, t, block, color);
-  } else {
-    textured ? combine<true, false>(shader, t, block, color) : combine<false, false>(shader, t, block, color);
+using Combine = int (*)(const Shader&, const Interpolator&, const ShadeBlock&, Float4*);
+
+template <Texels kTexels>
+Combine choose_combine(const Shader& shader) {
+  if (shader.per_pixel)
+    return shader.extended() ? combine<kTexels, true, true> : combine<kTexels, true, false>;
+  return shader.extended() ? combine<kTexels, false, true> : combine<kTexels, false, false>;
+}
+
+Combine choose_combine(const Shader& shader) {
+  if (shader.scalar_texels()) return choose_combine<Texels::Looked>(shader);
+  return shader.pyramid != nullptr ? choose_combine<Texels::Taps>(shader)
+                                   : choose_combine<Texels::Constant>(shader);
+}
+
+void look_up_shadows(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  for (int i = 0; i < block.count; ++i) {
+    const Lambda at{block.one[i], block.two[i], 0};
+    const Float4 visibility = visibility_at(*shader.lights, attribute(t, at, shader.layout.position));
+    for (int k = 0; k < layers::kMaxShadowLights; ++k) block.visibility[k][i] = visibility[k];
   }
 }
 
 }  // namespace
 
 void shade_batch(const Shader& shader, const Interpolator& t, ShadeBatch& batch) {
+  const Combine combine_block = choose_combine(shader);
   ShadeBlock block;
+  batch.texture_samples = 0;
   for (int first = 0; first < batch.count; first += kBlock) {
     block.dx = &batch.dx[first];
     block.dy = &batch.dy[first];
     block.count = std::min(kBlock, batch.count - first);
-    shade_block(shader, t, block, &batch.color[first]);
+    HWY_DYNAMIC_DISPATCH(Interpolate)(shader, t, block);
+    if (shader.shadowed) look_up_shadows(shader, t, block);
+    if (shader.per_pixel && shader.shadowed)
+      HWY_DYNAMIC_DISPATCH(LightShadowedPoints)(shader, t, block);
+    else if (shader.per_pixel)
+      HWY_DYNAMIC_DISPATCH(LightPoints)(shader, t, block);
+    batch.texture_samples += combine_block(shader, t, block, &batch.color[first]);
   }
 }
 

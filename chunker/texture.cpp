@@ -83,6 +83,33 @@ std::int64_t Pyramid::bytes() const {
   return sum;
 }
 
+Float4 anisotropic(const Pyramid& pyramid, float u, float v, const TextureDerivatives& derivatives,
+                   int max_samples, int& samples) {
+  const float xx = squared_length2(derivatives.x), yy = squared_length2(derivatives.y);
+  const Float4 along = xx < yy ? derivatives.y : derivatives.x;
+  const float major = std::max(xx, yy), minor = std::max(std::min(xx, yy), 1.0f);
+  constexpr float kLargest = 1e12f;  // texels²; beyond it the position of a sample means nothing
+  int count = 1;
+  if (major > minor && major < kLargest) {
+    const float ratio = std::sqrt(major / minor);
+    const int whole = static_cast<int>(ratio);
+    count = std::min(max_samples, whole + (static_cast<float>(whole) < ratio ? 1 : 0));
+  }
+  samples += count;
+  if (count == 1) return trilinear(pyramid, u, v, major);
+  const float share = 1 / static_cast<float>(count), footprint = major * (share * share);
+  const float du = along[0] / static_cast<float>(pyramid.levels[0].width),
+              dv = along[1] / static_cast<float>(pyramid.levels[0].height);
+  Float4 sum = splat(0);
+  for (int i = 0; i < count; ++i) {
+    const float place = (static_cast<float>(i) + 0.5f) * share - 0.5f;
+    sum += trilinear(pyramid, u + du * place, v + dv * place, footprint);
+  }
+  Float4 mean = sum * splat(share);
+  if (mean[3] > 1 - 1e-5f) mean[3] = 1;  // opaque stays exactly opaque
+  return mean;
+}
+
 Pyramid build_pyramid(const layers::Texture& texture) {
   Pyramid pyramid;
   if (texture.width <= 0 || texture.height <= 0) return pyramid;

@@ -68,6 +68,12 @@ inline Tap tap(float coordinate, int size) {
           x - static_cast<float>(below)};
 }
 
+inline Float4 nearest(const MipLevel& level, float u, float v) {
+  const Tap x = tap(u, level.width), y = tap(v, level.height);
+  const int column = x.share < 0.5f ? x.first : x.second, row = y.share < 0.5f ? y.first : y.second;
+  return level.texels[static_cast<std::size_t>(row) * level.width + column];
+}
+
 inline Float4 bilinear(const MipLevel& level, float u, float v) {
   const Tap x = tap(u, level.width), y = tap(v, level.height);
   const Float4* upper = level.texels.data() + static_cast<std::size_t>(y.first) * level.width;
@@ -86,5 +92,25 @@ inline Float4 trilinear(const Pyramid& pyramid, float u, float v, float footprin
   const Float4 fine = bilinear(pyramid.levels[whole], u, v);
   return share > 0 ? mix(fine, bilinear(pyramid.levels[whole + 1], u, v), share) : fine;
 }
+
+/// Screen derivatives of (u, v) in texels of level 0: first two channels.
+struct TextureDerivatives {
+  Float4 x, y;
+};
+
+inline float squared_length2(Float4 v) { return v[0] * v[0] + v[1] * v[1]; }
+
+/// `footprint` of trilinear().
+inline float footprint_of(const TextureDerivatives& d) {
+  return std::max(squared_length2(d.x), squared_length2(d.y));
+}
+
+/// Trilinear samples side by side along the longer derivative, each for an equal part of it:
+///
+///   N = min(⌈major / max(minor, 1)⌉, max_samples),   λ = log₂(major / N)
+///
+/// `samples` is increased by N. Derivatives that are not finite count as one isotropic sample.
+Float4 anisotropic(const Pyramid& pyramid, float u, float v, const TextureDerivatives& derivatives,
+                   int max_samples, int& samples);
 
 }  // namespace talisman::chunker

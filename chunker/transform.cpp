@@ -83,7 +83,8 @@ std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, ivec2 dis
   view.region.near_w = std::max(frame.camera.near_m, kSmallestNear);
   view.region.center_px = {placement.size_px.x * 0.5, placement.size_px.y * 0.5};
   view.eye = dvec3(frame.camera.world_from_camera[3]);
-  view.mirrored = placement.screen_from_sprite.determinant() < 0;
+  view.mirrored = (placement.screen_from_sprite.determinant() < 0) !=
+                  (glm::determinant(dmat3(frame.camera.world_from_camera)) < 0);
   return view;
 }
 
@@ -108,6 +109,16 @@ ProjectedVertex project(const SpriteView& view, const dvec3& p) {
   }
   v.x = snap(x);
   v.y = snap(y);
+  return v;
+}
+
+ProjectedVertex project_cut(const SpriteView& view, dvec3 p) {
+  p.z = std::max(p.z, view.region.near_w);
+  const dvec3 lo(view.region.center_px - kGuardBandPx, 0), hi(view.region.center_px + kGuardBandPx, 0);
+  p.x = std::clamp(p.x, lo.x * p.z, hi.x * p.z);
+  p.y = std::clamp(p.y, lo.y * p.z, hi.y * p.z);
+  ProjectedVertex v = project(view, p);
+  if (v.flags & kClipFlags) v.flags = kNotFinite;
   return v;
 }
 
@@ -143,7 +154,7 @@ Float4 PartVertices::world_normal(int i) const {
 
 ShadePoint PartVertices::shade_point(int i) const {
   ShadePoint point;
-  point.position = float4(layers::vec3(eye_position(i)));
+  point.position = point.lit_at = float4(layers::vec3(eye_position(i)));
   if (!mesh_->normals.empty()) point.normal = world_normal(i);
   if (!mesh_->colors.empty()) point.vertex_color = float4(mesh_->colors[i], 1);
   if (!mesh_->uvs.empty())

@@ -36,7 +36,7 @@ struct SpriteView {
   Rows34 sprite_from_world;
   ClipRegion region;
   layers::dvec3 eye{0, 0, 0};
-  bool mirrored = false;  ///< the placement turns the picture over
+  bool mirrored = false;  ///< the placement, or else the camera, turns the picture over
 };
 
 /// Empty when the placement is: no texels, or a map that is singular or not finite.
@@ -65,6 +65,9 @@ struct ProjectedVertex {
 };
 
 ProjectedVertex project(const SpriteView& view, const layers::dvec3& point);
+
+/// Of a vertex made by clip_triangle: it lies on the border of the region up to rounding; this puts it there.
+ProjectedVertex project_cut(const SpriteView& view, layers::dvec3 point);
 
 /// The vertices of one part.
 class PartVertices {

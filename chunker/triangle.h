@@ -73,6 +73,9 @@ inline float depth_at(const DepthPlane& plane, int sample) {
   return (plane.z + plane.dx * sample_offset(sample & 3)) + plane.dy * sample_offset(sample >> 2);
 }
 
+/// The same depth at every sample: that of one of them.
+inline DepthPlane flattened(const DepthPlane& plane, int sample) { return {depth_at(plane, sample), 0, 0}; }
+
 /// Derivatives per texel of the barycentric coordinates of corners 1 and 2, and of depth.
 struct Gradients {
   double b1x, b1y, b2x, b2y;
@@ -116,6 +119,8 @@ inline Interpolator interpolator_of(const Triangle& t, const Gradients& g, const
   p.s0 = t.depth[0];
   p.sx = static_cast<float>(g.depth_x);
   p.sy = static_cast<float>(g.depth_y);
+  p.corner_x = static_cast<float>(t.x[0]) * (1.0f / kSubpixel);
+  p.corner_y = static_cast<float>(t.y[0]) * (1.0f / kSubpixel);
   const Float4* corner[3];
   for (int i = 0; i < 3; ++i) corner[i] = attributes + static_cast<std::size_t>(t.vertex[i]) * count;
   for (int k = 0; k < count; ++k) {
