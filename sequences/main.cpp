@@ -60,6 +60,8 @@ void add_picture_options(CLI::App& command, CommandLine& line) {
   command.add_option("--shading", line.shading, "flat, gouraud or phong");
   command.add_option("--resolution", line.resolution, "sprite texels per display pixel, each axis");
   command.add_flag("--video", line.video, "also write video.mp4");
+  command.add_flag("--separate", line.separate,
+                   "also write each shade sprite alone, and the sum with its base (DIR/separate)");
   command.add_flag("--overlay", line.overlay, "draw each sprite's outline, coloured by age");
   command.add_flag("--quality", line.quality,
                    "PSNR, SSIM and FLIP of each frame against reference and direct (slow)");

@@ -58,6 +58,7 @@ Json json_of(const regulator::LayerAssessment& a) {
           {"anisotropy", f.sampling.anisotropy},
           {"uncovered_px", f.visibility.computed ? Json(f.visibility.uncovered_px) : Json(nullptr)},
           {"uncovered_why_not", f.visibility.why_not},
+          {"shade_px", f.shade.computed ? Json(f.shade.px) : Json(nullptr)},
           {"matched_points", a.matched_points},
           {"fit", warp::name(a.fitted.status)},
           {"frames_since_render", a.frames_since_render}};
@@ -79,7 +80,10 @@ struct CountField {
 constexpr CountField kCounts[] = {{"layers_in_view", &FrameLine::layers_in_view},
                                   {"renders", &FrameLine::renders},
                                   {"reuses", &FrameLine::reuses},
-                                  {"layers_assessed", &FrameLine::layers_assessed}};
+                                  {"layers_assessed", &FrameLine::layers_assessed},
+                                  {"shadow_maps_drawn", &FrameLine::shadow_maps_drawn},
+                                  {"shadow_maps_reused", &FrameLine::shadow_maps_reused},
+                                  {"reflections_drawn", &FrameLine::reflections_drawn}};
 constexpr IntField kTotals[] = {{"polygons_rendered", &FrameLine::polygons_rendered},
                                 {"polygons_reference", &FrameLine::polygons_reference},
                                 {"pixels_rendered", &FrameLine::pixels_rendered},
@@ -125,6 +129,10 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
     ++line.layers_in_view;
     line.polygons_reference += pipeline.layers.layers[d.layer].polygons;
   }
+  line.shadow_maps_drawn = report.shade.shadow_maps_drawn;
+  line.shadow_maps_reused = report.shade.shadow_maps_reused;
+  line.reflections_drawn = report.shade.reflections_drawn;
+  line.polygons_rendered += report.shade.shadow_polygons;
   line.pixels_reference = report.pixels_reference;
   line.plan_ms = report.times.plan_ms;
   if (report.picture.pixels.empty()) return line;
@@ -213,6 +221,9 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
 }
 
 void add_decisions(Summary& summary, const FrameReport& report, const PipelineState& state) {
+  for (std::size_t e = 0; e < summary.effects.size(); ++e)
+    if (summary.effects[e].effect == layers::Effect::ShadowMap)
+      summary.effect_passes[e] += report.shade.shadow_maps_drawn;
   for (const regulator::LayerDecision& d : report.plan.decisions) {
     if (d.action == regulator::Action::Drop) continue;
     LayerSummary& layer = summary.layers[d.layer];
@@ -225,7 +236,8 @@ void add_decisions(Summary& summary, const FrameReport& report, const PipelineSt
     if (std::int64_t{size.x} * size.y > std::int64_t{layer.sprite_px.x} * layer.sprite_px.y)
       layer.sprite_px = size;
     for (std::size_t e = 0; e < summary.effects.size(); ++e)
-      for (const int user : summary.effects[e].layers) summary.effect_passes[e] += user == d.layer;
+      for (const int user : summary.effects[e].layers)
+        summary.effect_passes[e] += user == d.layer && summary.effects[e].effect != layers::Effect::ShadowMap;
   }
 }
 

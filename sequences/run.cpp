@@ -11,6 +11,7 @@
 
 #include "sequences/line_file.h"
 #include "sequences/overlay.h"
+#include "sequences/separate.h"
 
 namespace talisman::sequences {
 
@@ -149,6 +150,7 @@ class Runner {
       : options_(options), pipeline_(*sequence.scene, sequence.layers, settings), state_(pipeline_) {
     make_folder(options.out);
     if (!options.plan_only) make_folder(options.out + "/frames");
+    if (options.separate) make_folder(options.out + "/separate");
     const Json identity = identity_of(sequence, settings, options);
     if (options.resume) kept_ = complete_frames(options, identity);
     if (kept_.empty()) remove_old_results(options);
@@ -182,7 +184,8 @@ class Runner {
   void finish(double fps) {
     decisions_->finish();
     frames_->finish();
-    if (options_.video) write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
+    if (options_.video)
+      write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
     write_text_atomically(options_.out + "/summary.json", json_of(summary_));
   }
 
@@ -192,6 +195,7 @@ class Runner {
     if (prepared_) {
       const auto start = std::chrono::steady_clock::now();
       write_picture(pipeline_, report, options_);
+      if (options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
       line.io_ms =
           std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
       if (options_.quality) line.quality = judge(pipeline_, report, *prepared_);
