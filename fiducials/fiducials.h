@@ -3,7 +3,9 @@
 
 /// How wrong is the old sprite, warped, for the frame now? [LS97 5]
 ///
-/// - Geometric: F = maxᵢ ‖pᵢ - W p̂ᵢ‖, pixels, best 0 [LS97 5.1].
+/// - Geometric: F = maxᵢ ‖pᵢ - W p̂ᵢ‖, pixels, best 0 [LS97 5.1]; where a sprite holds shadows, highlights or
+///   reflections, plus how far those have run over the surface (fiducials/shade.h): the triangle inequality
+///   makes the sum a bound of their displacement on the display.
 /// - Photometric: F = maxᵢ ‖Cᵢ - W_C Ĉᵢ‖ of the shaded characteristic points, linear light, best 0; and the
 ///   angle by which a light has moved about the layer, radians, best 0 [LS97 5.2], fiducials/photometric.h.
 /// - Sampling: singular values of the Jacobian of the map from sprite to display: how many display pixels one
@@ -77,6 +79,14 @@ struct TurnedFaces {
   int count = 0;         ///< faces of the polyhedron that faced away from the eye and face it now
   double px = 0;         ///< square root of the largest area on the display of one of them
   dvec2 where_px{0, 0};  ///< the middle of that face's part on the display
+/// How far shadows, highlights and mirrored pictures have run over a surface since it was drawn
+/// (fiducials/shade.h). Already added to Geometric::px of the same report.
+struct ShadeMotion {
+  bool computed = false;
+  std::string_view why_not = "";
+  double px = 0;  ///< best 0
+  dvec2 where_px{0, 0};
+  int trace = -1;  ///< index into LayerState::traces of the worst; -1: none moves
 };
 
 struct Report {
@@ -85,6 +95,7 @@ struct Report {
   Visibility visibility;
   Photometric photometric{};  ///< not by `assess`: see fiducials/photometric.h
   TurnedFaces turned{};       ///< not by `assess`: see fiducials/turned_faces.h
+  ShadeMotion shade;
 };
 
 /// Singular values (largest first) of the 2×2 matrix | a b ; c d |, closed form [Blinn 96]:

@@ -26,6 +26,25 @@ LayerPreferences strictest(LayerPreferences a, const LayerPreferences& b) {
   return a;
 }
 
+/// An aggregate draws all terms of its members itself, also those that are in their shade layers.
+void hold_terms_of(const Layer& member, Layer& aggregate) {
+  const auto join = [](std::vector<int>& into, const std::vector<int>& more) {
+    into.insert(into.end(), more.begin(), more.end());
+    std::sort(into.begin(), into.end());
+    into.erase(std::unique(into.begin(), into.end()), into.end());
+  };
+  HeldTerms& holds = aggregate.holds;
+  holds.shadows = holds.shadows || member.holds.shadows;
+  holds.specular = holds.specular || member.holds.specular || member.factored.specular;
+  holds.second_texture =
+      holds.second_texture || member.holds.second_texture || member.factored.second_texture;
+  join(aggregate.casters, member.casters);
+  if (!member.holds.reflection || holds.reflection) return;  // one sprite looks one reflection up: the first member's
+  holds.reflection = true;
+  aggregate.plane = member.plane;
+  aggregate.reflected = member.reflected;
+}
+
 std::string joined_names(std::span<const Layer> layers, std::span<const int> members) {
   constexpr std::size_t kAll = 4, kCut = 3;
   std::string name;
@@ -51,6 +70,9 @@ Layer aggregate_of(std::span<const Layer> layers, std::span<const int> members, 
     aggregate.parts.insert(aggregate.parts.end(), layer.parts.begin(), layer.parts.end());
     aggregate.preferences = strictest(aggregate.preferences, layer.preferences);
     aggregate.polygons += layer.polygons;
+    hold_terms_of(layer, aggregate);
+    for (std::size_t k = member + 1; k < layers.size() && layers[k].base == member; ++k)
+      hold_terms_of(layers[k], aggregate);
   }
   aggregate.preferences.bound_each_part = true;
   std::sort(aggregate.parts.begin(), aggregate.parts.end());

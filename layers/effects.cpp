@@ -5,6 +5,8 @@
 
 #include "layers/animation.h"
 #include "layers/light_change.h"
+#include "layers/scene.h"
+#include "layers/shading.h"
 
 namespace talisman::layers {
 
@@ -38,14 +40,19 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
     case Effect::Skinning:
       if (part.skin >= 0) return "part '" + part.name + "' has a skin";
       break;
-    case Effect::LayerResolution:
-    case Effect::MotionBlur:
-    case Effect::SpriteCompression:
-    case Effect::VisibilitySort:
-    case Effect::ColorWarp:
-      break;  // asked for by layers and runs, not by parts
+    default:
+      break;  // asked for by layers, not by parts
   }
   return {};
+}
+
+std::string quoted(const char* what, const std::string& name) {
+  return std::string(what) + " '" + name + "'";
+}
+
+std::string light_of(const Scene& scene, int light) {
+  const std::string& name = scene.lights[light].name;
+  return name.empty() ? "light " + std::to_string(light) : quoted("light", name);
 }
 
 const char* name_of(OrderGroup group) {
@@ -54,35 +61,127 @@ const char* name_of(OrderGroup group) {
                                            : "normal";
 }
 
-/// The first other layer of the same group; null: the groups order `layer` against all others.
+/// The first other layer of the same group; null: the groups order `layer` against all others. Shade layers
+/// follow their bases.
 const Layer* first_rival(std::span<const Layer> layers, const Layer& layer) {
+  if (layer.base >= 0) return nullptr;
   for (const Layer& other : layers)
-    if (other.id != layer.id && other.group == layer.group) return &other;
+    if (other.id != layer.id && other.group == layer.group && other.base < 0) return &other;
   return nullptr;
 }
 
-std::string call_of(const Scene& scene, std::span<const Layer> layers, const Layer& layer, Effect effect,
-                    const RunEffects& run, std::span<const int> carriers) {
-  if (effect == Effect::ColorWarp) return light_change_of(scene, layer, carriers).why;
-  if (effect == Effect::SpriteCompression)
-    return run.compression_quality ? "the run asks for quality " + std::to_string(*run.compression_quality)
-                                   : "";
-  if (effect == Effect::MotionBlur)
-    return layer.preferences.motion_blur > 0 ? "layer '" + layer.name + "' has motion_blur > 0" : "";
-  if (effect == Effect::VisibilitySort) {
-    const Layer* rival = first_rival(layers, layer);
-    return rival ? "layers '" + layer.name + "' and '" + rival->name + "' of group " + name_of(layer.group) +
-                       " can overlap"
+std::string call_of_visibility_sort(std::span<const Layer> layers, const Layer& layer) {
+  const Layer* rival = first_rival(layers, layer);
+  return rival ? "layers '" + layer.name + "' and '" + rival->name + "' of group " + name_of(layer.group) +
+                     " can overlap"
+               : "";
+}
+
+/// "layer 'floor/specular' holds the highlights of its base"
+std::string shade_call(const Layer& layer, LayerKind kind, const std::string& what) {
+  return layer.kind == kind ? quoted("layer", layer.name) + " holds " + what : "";
+}
+
+/// What is asked of one layer, beside the layer itself.
+struct Context {
+  const Scene& scene;
+  std::span<const Layer> layers;
+  const RunEffects& run;
+  std::vector<int> carriers;  ///< moving_carriers(scene)
+};
+
+std::string call_of(const Context& context, const Layer& layer, Effect effect) {
+  const Scene& scene = context.scene;
+  switch (effect) {
+    case Effect::LayerResolution:
+      return layer.preferences.resolution_scale != 1 ? quoted("layer", layer.name) + " has its own resolution"
+                                                     : "";
+    case Effect::MotionBlur:
+      return layer.preferences.motion_blur > 0 ? quoted("layer", layer.name) + " has motion_blur > 0" : "";
+    case Effect::SpriteCompression:
+      return context.run.compression_quality
+                 ? "the run asks for quality " + std::to_string(*context.run.compression_quality)
                  : "";
+    case Effect::VisibilitySort:
+      return call_of_visibility_sort(context.layers, layer);
+    case Effect::ColorWarp:
+      return layer.base < 0 ? light_change_of(scene, layer, context.carriers).why : "";
+    case Effect::ShadowMap:
+      return layer.holds.shadows ? "shadows fall on " + quoted("layer", layer.name) : "";
+    case Effect::ShadowLayer:
+      return layer.kind == LayerKind::Shadow
+                 ? shade_call(layer, LayerKind::Shadow, "the shadows of " + light_of(scene, layer.light))
+                 : "";
+    case Effect::SpecularLayer:
+      return shade_call(layer, LayerKind::Specular, "the highlights of its base");
+    case Effect::ReflectionMap:
+      return layer.holds.reflection ? quoted("layer", layer.name) + " mirrors " +
+                                          std::to_string(layer.reflected.size()) + " layers"
+                                    : "";
+    case Effect::ReflectionLayer:
+      return shade_call(layer, LayerKind::Reflection, "the mirrored picture");
+    case Effect::TextureLayers:
+      return shade_call(layer, LayerKind::Texture, "the second texture of its base");
+    default:
+      break;
   }
-  if (effect == Effect::LayerResolution)
-    return layer.preferences.resolution_scale != 1 ? "layer '" + layer.name + "' has its own resolution" : "";
   for (const int part : layer.parts)
     if (std::string why = call_of(scene, scene.parts[part], effect); !why.empty()) return why;
   return {};
 }
 
-std::string why_not(const Scene& scene, Effect effect) {
+// --- Why not ---
+
+bool any_layer(std::span<const Layer> layers, bool (*is_so)(const Layer&)) {
+  return std::any_of(layers.begin(), layers.end(), is_so);
+}
+
+bool any_layer_part(const Scene& scene, std::span<const Layer> layers,
+                    bool (*property)(const Scene&, const Part&)) {
+  return std::any_of(layers.begin(), layers.end(),
+                     [&](const Layer& layer) { return any_part(scene, layer, property); });
+}
+
+std::string why_no_shadow_map(const Scene& scene, std::span<const Layer> layers) {
+  const bool casts = std::any_of(scene.lights.begin(), scene.lights.end(),
+                                 [](const Light& light) { return light.casts_shadow; });
+  if (scene.lights.empty()) return "the scene has no light";
+  if (!casts) return "no light casts shadows";
+  if (!any_layer_part(scene, layers, is_lit)) return "no part is lit, so none receives a shadow";
+  return "no part casts a shadow on another layer";
+}
+
+std::string why_no_reflection(const Scene& scene, std::span<const Layer> layers) {
+  for (const Layer& layer : layers)
+    if (layer.base < 0 && any_part(scene, layer, is_reflecting)) {
+      const std::string defect = reflection_defect(scene, layer);
+      return quoted("layer", layer.name) + ": " + (defect.empty() ? "nothing else is there" : defect);
+    }
+  return "no material has reflectivity > 0";
+}
+
+/// Of an effect of shade layers: nothing calls for the term, or no layer factors it.
+std::string why_no_shade_layer(const Scene& scene, std::span<const Layer> layers, Effect effect) {
+  switch (effect) {
+    case Effect::ShadowLayer:
+      return any_layer(layers, [](const Layer& l) { return l.holds.shadows; })
+                 ? "no layer factors its shadows: their sprites hold them"
+                 : why_no_shadow_map(scene, layers);
+    case Effect::SpecularLayer:
+      if (!any_layer_part(scene, layers, is_highlighted)) return "no lit material has specular > 0";
+      return "no layer with highlights factors them: its sprite holds them";
+    case Effect::ReflectionLayer:
+      return any_layer(layers, [](const Layer& l) { return l.holds.reflection; })
+                 ? "no layer factors its reflection: its sprite holds it"
+                 : why_no_reflection(scene, layers);
+    default:
+      return any_layer_part(scene, layers, has_second_texture)
+                 ? "no layer factors its second texture: its sprite holds it"
+                 : "no material has a second texture";
+  }
+}
+
+std::string why_not(const Scene& scene, std::span<const Layer> layers, Effect effect) {
   switch (effect) {
     case Effect::Texture:
     case Effect::MipFilter:
@@ -105,8 +204,29 @@ std::string why_not(const Scene& scene, Effect effect) {
       return "no two layers are in one group";
     case Effect::ColorWarp:
       return "no light moves against a lit layer, and no highlight moves";
+    case Effect::ShadowMap:
+      return why_no_shadow_map(scene, layers);
+    case Effect::ReflectionMap:
+      return why_no_reflection(scene, layers);
+    default:
+      return why_no_shade_layer(scene, layers, effect);
   }
-  return {};
+}
+
+/// "light 'spot': drawn again when light or casters move; light 'sun': static, drawn once"
+std::string why_of_shadow_maps(const Scene& scene, std::span<const Layer> layers) {
+  std::string why;
+  for (const ShadowMapUse& use : shadow_maps_called_for(scene, layers))
+    why += (why.empty() ? "" : "; ") + use.why;
+  return why;
+}
+
+bool moves(const Scene& scene, const Part& part) {
+  if (is_animated(scene, part.node)) return true;
+  if (part.skin < 0) return false;
+  const Skin& skin = scene.skins[part.skin];
+  return std::any_of(skin.joints.begin(), skin.joints.end(),
+                     [&](int joint) { return is_animated(scene, joint); });
 }
 
 }  // namespace
@@ -135,6 +255,18 @@ std::string_view name(Effect effect) {
       return "visibility_sort";
     case Effect::ColorWarp:
       return "color_warp";
+    case Effect::ShadowMap:
+      return "shadow_map";
+    case Effect::ShadowLayer:
+      return "shadow_layer";
+    case Effect::SpecularLayer:
+      return "specular_layer";
+    case Effect::ReflectionMap:
+      return "reflection_map";
+    case Effect::ReflectionLayer:
+      return "reflection_layer";
+    case Effect::TextureLayers:
+      return "texture_layers";
   }
   return "?";
 }
@@ -147,20 +279,39 @@ bool calls_for_visibility_sort(std::span<const Layer> layers) {
 
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers,
                                            const RunEffects& run) {
-  const std::vector<int> carriers = moving_carriers(scene);
-  std::vector<EffectCall> table;
-  for (const Effect effect : kAllEffects) {
-    EffectCall call{effect, false, why_not(scene, effect), {}};
-    for (const Layer& layer : layers) {
-      std::string why = call_of(scene, layers, layer, effect, run, carriers);
-      if (why.empty()) continue;
-      if (!call.called) call.why = std::move(why);
-      call.called = true;
-      call.layers.push_back(layer.id);
+  const Context context{scene, layers, run, moving_carriers(scene)};
+  std::vector<ShadowMapUse> shadow_maps_called_for(const Scene& scene, std::span<const Layer> layers) {
+    std::vector<ShadowMapUse> uses;
+    const std::vector<int> casting = casting_parts(scene, layers);
+    const bool casters_move = std::any_of(casting.begin(), casting.end(),
+                                          [&](int part) { return moves(scene, scene.parts[part]); });
+    for (std::size_t i = 0; i < scene.lights.size() && !casting.empty(); ++i) {
+      const Light& light = scene.lights[i];
+      if (!light.casts_shadow) continue;
+      ShadowMapUse use{static_cast<int>(i), false, light_of(scene, static_cast<int>(i))};
+      use.drawn_once = !casters_move && (light.node < 0 || !is_animated(scene, light.node));
+      use.why += use.drawn_once ? ": static, drawn once" : ": drawn again when light or casters move";
+      uses.push_back(std::move(use));
     }
-    table.push_back(std::move(call));
+    return uses;
   }
-  return table;
-}
+
+  std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers) {
+    std::vector<EffectCall> table;
+    for (const Effect effect : kAllEffects) {
+      EffectCall call{effect, false, {}, {}};
+      for (const Layer& layer : layers) {
+        std::string why = call_of(context, layer, effect);
+        if (why.empty()) continue;
+        if (!call.called) call.why = std::move(why);
+        call.called = true;
+        call.layers.push_back(layer.id);
+      }
+      if (!call.called) call.why = why_not(scene, layers, effect);
+      if (call.called && effect == Effect::ShadowMap) call.why = why_of_shadow_maps(scene, layers);
+      table.push_back(std::move(call));
+    }
+    return table;
+  }
 
 }  // namespace talisman::layers

@@ -29,12 +29,20 @@ enum class Effect {
   MotionBlur,         ///< some layer has an open shutter: sampled along its motion
   SpriteCompression,  ///< the run keeps its sprites compressed
   VisibilitySort,     ///< some layers can overlap, and the author's groups do not order them
-  ColorWarp,  ///< the light on some layer can change: colour warp and photometric fiducial [LS97 4.3, 5.2]
+  ColorWarp,    ///< the light on some layer can change: colour warp and photometric fiducial [LS97 4.3, 5.2]
+  ShadowMap,    ///< some light casts shadows, something casts and something receives: a pass per light
+  ShadowLayer,  ///< … and some layer factors them: black sprites that darken their base
+  SpecularLayer,    ///< some layer factors its highlights
+  ReflectionMap,    ///< a flat layer mirrors others: a pass with the mirrored camera for each of its renders
+  ReflectionLayer,  ///< … and factors the mirrored picture
+  TextureLayers,    ///< some layer factors the second texture of its material
 };
 inline constexpr std::array kAllEffects = {
     Effect::Texture,           Effect::MipFilter,      Effect::Lighting,        Effect::SpecularHighlight,
     Effect::Translucency,      Effect::Skinning,       Effect::LayerResolution, Effect::MotionBlur,
-    Effect::SpriteCompression, Effect::VisibilitySort, Effect::ColorWarp};
+    Effect::SpriteCompression, Effect::VisibilitySort, Effect::ColorWarp,       Effect::ShadowMap,
+    Effect::ShadowLayer,       Effect::SpecularLayer,  Effect::ReflectionMap,   Effect::ReflectionLayer,
+    Effect::TextureLayers};
 std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
 
 struct EffectCall {
@@ -51,6 +59,16 @@ struct RunEffects {
 
 /// Are there two layers that the author's groups do not order? Cost: O(layers).
 bool calls_for_visibility_sort(std::span<const Layer> layers);
+
+/// How a shadow map comes to be: does its light, or anything that casts into it, move?
+struct ShadowMapUse {
+  int light = -1;
+  bool drawn_once = false;  ///< neither moves
+  std::string why;          ///< "light 'sun': static, drawn once"
+};
+
+/// One entry per light whose shadow map some layer looks up. Cost: O(casting parts · depth).
+std::vector<ShadowMapUse> shadow_maps_called_for(const Scene& scene, std::span<const Layer> layers);
 
 /// One entry per effect, in the order of kAllEffects. Parts that no layer takes do not count. Cost: O(parts).
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers,

@@ -9,6 +9,7 @@
 #include <unordered_map>
 
 #include "layers/animation.h"
+#include "layers/shading.h"
 
 namespace talisman::layers {
 
@@ -81,6 +82,24 @@ std::string preferences_defect(const LayerPreferences& p) {
   if (!(p.motion_blur >= 0 && p.motion_blur <= 1))
     return out_of_range("motion_blur", p.motion_blur, "at least 0, at most 1");
   return {};
+}
+
+std::string multiplier_defect(const char* what, const Keys<double>& keys) {
+  for (const double value : keys.values)
+    if (!(value >= 0 && value <= 1)) return out_of_range(what, value, "0 to 1");
+  return {};
+}
+
+/// First broken rule of what the author wrote, whatever the scene.
+std::string spec_defect(const LayerSpec& spec) {
+  const ShadingSpec& shading = spec.shading;
+  std::string defect = preferences_defect(spec.preferences);
+  for (const auto* term : {&shading.shadows, &shading.specular, &shading.reflection, &shading.textures})
+    if (defect.empty() && *term) defect = preferences_defect(**term);
+  if (defect.empty()) defect = multiplier_defect("fade", spec.fade);
+  if (defect.empty()) defect = multiplier_defect("blend", shading.first_blend);
+  if (defect.empty()) defect = multiplier_defect("blend", shading.second_blend);
+  return defect;
 }
 
 /// Takes the free parts that the spec's globs match. The defect is without the layer's name.
@@ -205,7 +224,7 @@ LayerSet factor(const Scene& scene, std::span<const LayerSpec> specs) {
   LayerSet set;
   for (const LayerSpec& spec : specs) {
     Taken found = take_parts(spec, names, taken);
-    std::string defect = found.defect.empty() ? preferences_defect(spec.preferences) : found.defect;
+    std::string defect = found.defect.empty() ? spec_defect(spec) : found.defect;
     if (!used.insert(spec.name).second) defect = "name is used twice, rule: unique";
     if (!defect.empty() && set.defect.empty()) set.defect = "layer '" + spec.name + "': " + defect;
     Layer layer;
@@ -214,10 +233,12 @@ LayerSet factor(const Scene& scene, std::span<const LayerSpec> specs) {
     layer.parts = std::move(found.parts);
     layer.group = spec.group;
     layer.preferences = spec.preferences;
+    layer.fade = spec.fade;
     layer.polygons = polygons_of(scene, layer.parts);
     layer.rigid_node = rigid_node_of(scene, layer.parts, carriers);
     set.layers.push_back(std::move(layer));
   }
+  add_shade_layers(scene, specs, set);
   set.unassigned_parts = static_cast<int>(std::count(taken.begin(), taken.end(), false));
   return set;
 }

@@ -6,6 +6,7 @@
 /// A layer is a set of parts that are drawn into one sprite, together with the author's wishes for it. Layers
 /// are named by the author; the parts that a layer takes are named by globs over the parts' names.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,13 +33,35 @@ struct LayerPreferences {
   /// parts lie far apart: one box around them all knows nothing of the parallax between them. Cost: fits in
   /// proportion to the parts.
   bool bound_each_part = false;
-  /// Share of the frame interval during which the shutter is open; 0 … 1; 0: no motion blur. The sprite's samples
-  /// along the layer's motion are taken farther apart the faster it moves (PlacementOptions): blurred along
-  /// that direction, and cheaper to draw as it grows [LS97 3.4].
+  /// Share of the frame interval during which the shutter is open; 0 … 1; 0: no motion blur. The sprite's
+  /// samples along the layer's motion are taken farther apart the faster it moves (PlacementOptions): blurred
+  /// along that direction, and cheaper to draw as it grows [LS97 3.4].
   double motion_blur = 0;
 };
 
-enum class LayerKind { Geometry };
+/// What a layer's sprite holds [LS97 2.3]. A geometry layer is a surface as it looks; the others are shade
+/// layers, one term of the shading of their base layer, scan-converted over the same surface and composited
+/// directly in front of it (layers/shading.h).
+enum class LayerKind { Geometry, Shadow, Specular, Reflection, Texture };
+
+/// The terms of its shading that get sprites of their own, each with its own preferences (0.5 of the
+/// resolution for a blurry shadow); a term that is empty stays in the layer's own sprite.
+struct ShadingSpec {
+  std::optional<LayerPreferences> shadows;     ///< a layer per light that casts shadows
+  std::optional<LayerPreferences> specular;    ///< the highlights of all lights
+  std::optional<LayerPreferences> reflection;  ///< flat surfaces only
+  std::optional<LayerPreferences> textures;    ///< the second texture of each material
+  /// Multipliers of the two textures' sprites, 0 … 1, over time, that need no render. Empty:
+  /// Material::texture_blend.
+  Keys<double> first_blend, second_blend;
+};
+
+/// The plane of a flat surface, in the space of a node: it faces the way `normal` (unit length) points.
+struct SurfacePlane {
+  int node = -1;
+  dvec3 point{0, 0, 0};
+  dvec3 normal{0, 1, 0};
+};
 
 /// The author's order. Groups are drawn in the order of these values; inside a group layers are sorted by
 /// depth.
@@ -50,6 +73,20 @@ struct LayerSpec {
   std::vector<std::string> part_globs;
   OrderGroup group = OrderGroup::Normal;
   LayerPreferences preferences;
+  ShadingSpec shading{};
+  bool casts_shadows = true;  ///< its lit, opaque parts are drawn into the shadow maps
+  Keys<double>
+      fade{};  ///< alpha multiplier of its sprites, 0 … 1, over time: to see what is behind; empty: 1
+};
+
+/// Which terms of the shading a sprite holds that depend on more than its own surface and the lights. A term
+/// that nothing calls for is not set.
+struct HeldTerms {
+  bool shadows = false;     ///< darkened by the shadow maps of `Layer::casters`
+  bool reflection = false;  ///< shows `Layer::reflected`
+  bool specular = false;
+  bool second_texture = false;
+  bool operator==(const HeldTerms&) const = default;
 };
 
 struct Layer {
@@ -59,11 +96,21 @@ struct Layer {
   std::vector<int> parts;  ///< indices into Scene::parts, ascending
   OrderGroup group = OrderGroup::Normal;
   LayerPreferences preferences;
-  int polygons = 0;  ///< triangles of all its parts
+  int polygons = 0;  ///< triangles of all its parts, and of what is drawn again for its reflection
   int rigid_node =
-      -1;  ///< the node that all parts follow rigidly; -1: they move against each other or deform
-  std::vector<int>
-      members;  ///< of an aggregate (layers/aggregate.h): the layers drawn in it, ascending; else empty
+      -1;          ///< the node that all parts follow rigidly; -1: they move against each other or deform
+  int base = -1;   ///< shade layers: id of the geometry layer whose surface this is a term of
+  int light = -1;  ///< Shadow: index into Scene::lights
+  HeldTerms holds;
+  HeldTerms factored;          ///< Geometry: the terms that are called for and in shade layers of its own
+  std::vector<int> casters;    ///< holds.shadows: ids of the geometry layers whose shadows may fall on it
+  std::vector<int> reflected;  ///< holds.reflection: ids of the geometry layers that it mirrors
+  /// Where that matters and is so: all of it (with a reflection: all that reflects) lies in one plane.
+  std::optional<SurfacePlane> plane;
+  Keys<double> fade;  ///< multiplier of its sprite, colour and alpha, 0 … 1, over time; empty: 1
+  Keys<double> gain;  ///< multiplier of its sprite's colour alone, likewise
+  /// Of an aggregate (layers/aggregate.h): the layers drawn in it, ascending; else empty.
+  std::vector<int> members;
   bool is_aggregate() const { return !members.empty(); }
 };
 
@@ -71,13 +118,16 @@ struct LayerSet {
   std::vector<Layer> layers;
   std::string defect;  ///< empty, or the first broken rule: "layer 'x': part glob 'ship*' matches no part"
   int unassigned_parts = 0;  ///< parts that no layer takes; they are not drawn
+  /// Parts drawn into the shadow maps, ascending; none if no light casts shadows or nothing receives them.
+  std::vector<int> casting_parts;
 };
 
 /// True if `text` matches `glob`: '*' is any run of characters, "/" and none included, '?' is one. Cost:
 /// O(glob · text).
 bool glob_matches(const std::string& glob, const std::string& text);
 
-/// Layers from the author's specs, one per spec in the same order. A part belongs to the first layer that
+/// Layers from the author's specs, one per spec in the same order, each followed by its shade layers
+/// (layers/shading.h). A part belongs to the first layer that
 /// takes it. Defects: a glob that matches no part, a layer that is left without parts, a name used twice, a
 /// preference out of its range; the layers are returned all the same. `rigid_node` is the deepest node above
 /// all parts (or theirs) if nothing between it and them moves by a track; for parts that stand still in

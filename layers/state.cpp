@@ -7,6 +7,7 @@
 #include <glm/matrix.hpp>
 
 #include "layers/clip.h"
+#include "layers/shading.h"
 
 namespace talisman::layers {
 namespace {
@@ -15,24 +16,9 @@ bool is_finite(const dvec4& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
 }
 
-bool is_lit(const Scene& scene, const Part& part) {
-  return part.material < 0 || !scene.materials[part.material].unlit;
-}
-
 void capture_appearance(const SceneFrame& frame, const Layer& layer, LayerState& state) {
-  const Scene& scene = *frame.scene;
-  bool lit = false;
-  state.world_from_part.reserve(layer.parts.size());
-  for (const int part : layer.parts) {
-    state.world_from_part.push_back(frame.world_from_node[scene.parts[part].node]);
-    lit = lit || is_lit(scene, scene.parts[part]);
-  }
-  for (const int part : layer.parts) {
-    if (scene.parts[part].skin < 0) continue;
-    const auto palette = joint_palette(frame, scene.parts[part]);
-    state.world_from_part.insert(state.world_from_part.end(), palette.begin(), palette.end());
-  }
-  if (lit) state.lights = frame.lights;
+  state.world_from_part = part_matrices(frame, layer.parts);
+  if (any_part(*frame.scene, layer, is_lit)) state.lights = frame.lights;
 }
 
 bool can_be_seen(const LayerState& state) {
@@ -133,7 +119,8 @@ dvec2 screen_from_clip(const dvec4& clip, ivec2 display_px) {
 
 bool LayerState::same_pixels(const LayerState& other) const {
   return layer == other.layer && camera == other.camera && view == other.view &&
-         world_from_part == other.world_from_part && lights == other.lights;
+         world_from_part == other.world_from_part && lights == other.lights &&
+         world_from_influence == other.world_from_influence;
 }
 
 LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound& bound, const View& view) {
@@ -148,6 +135,19 @@ LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound
   if (!state.clip_points.empty()) capture_bounds(bound.hull, state);
   state.touches_display = overlaps_display(state.screen_bounds_px, view.display_px);
   return state;
+}
+
+std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> parts) {
+  const Scene& scene = *frame.scene;
+  std::vector<dmat4> matrices;
+  matrices.reserve(parts.size());
+  for (const int part : parts) matrices.push_back(frame.world_from_node[scene.parts[part].node]);
+  for (const int part : parts) {
+    if (scene.parts[part].skin < 0) continue;
+    const auto palette = joint_palette(frame, scene.parts[part]);
+    matrices.insert(matrices.end(), palette.begin(), palette.end());
+  }
+  return matrices;
 }
 
 WorldBounds bounds_of(std::span<const dvec3> points) {

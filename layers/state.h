@@ -46,6 +46,18 @@ dmat4 clip_from_world(const CameraState& camera, ivec2 display_px);
 /// Display position of a clip-space point with w > 0.
 dvec2 screen_from_clip(const dvec4& clip, ivec2 display_px);
 
+/// Something that moves over a surface without the surface moving: the shadow of one caster, a highlight, the
+/// mirrored picture of one layer. Its characteristic places in the receiver's own space
+/// (layers/shade_state.h).
+struct ShadeTrace {
+  enum class Kind { Shadow, Highlight, Reflection };
+  Kind kind = Kind::Shadow;
+  int light = -1;             ///< index into Scene::lights (Shadow, Highlight)
+  int source = -1;            ///< id of the layer that casts or is mirrored
+  bool on_receiver = false;   ///< they may touch the receiver
+  std::vector<dvec3> places;  ///< NaN where there is none
+};
+
 struct LayerState {
   int layer = -1;
   double time_s = 0;
@@ -66,9 +78,14 @@ struct LayerState {
   double nearest_w_m = 0;  ///< smallest w (depth along the view axis) of the clipped solid; 0: out of view
 
   dvec3 eye() const { return dvec3(camera.world_from_camera[3]); }
+  /// Of layers whose pixels depend on more than their own parts; empty for all others.
+  std::vector<dmat4> world_from_influence;  ///< as world_from_part, of the parts that cast or are mirrored
+  dmat4 world_from_receiver{1.0};           ///< space of the traces
+  std::vector<ShadeTrace> traces;
+
   bool in_view() const { return !screen_bounds_px.empty(); }
-  /// True if the two states would be rendered to the same pixels: same layer, camera, view, part matrices and
-  /// lights, compared exactly. The time is not compared. NaN is never the same.
+  /// True if the two states would be rendered to the same pixels: same layer, camera, view, part matrices,
+  /// influences and lights, compared exactly. The time is not compared. NaN is never the same.
   bool same_pixels(const LayerState& other) const;
 };
 
@@ -76,6 +93,9 @@ struct LayerState {
 /// area gives a state out of view. Cost: O(characteristic points) for a fixed bound inside the view; clipping
 /// adds O(triangles · 5); a bound with a surface O(triangles + points · lights).
 LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound& bound, const View& view);
+
+/// World matrices of the nodes of `parts`, joint palettes of skinned ones appended: all that moves them.
+std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> parts);
 
 /// Matched screen points of the same material points, in pixels. Only finite points with w > near in both
 /// states.

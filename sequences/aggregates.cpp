@@ -9,6 +9,7 @@
 
 #include "layers/aggregate.h"
 #include "layers/check.h"
+#include "layers/shading.h"
 #include "sequences/layer_planning.h"
 
 namespace talisman::sequences {
@@ -80,7 +81,7 @@ std::vector<layers::Occluder> occluders_in_view(const Pipeline& authored,
   std::vector<layers::Occluder> occluders;
   for (const Layer& layer : authored.layers.layers) {
     const LayerState& state = states[layer.id];
-    if (!state.touches_display) continue;
+    if (!state.touches_display || layer.base >= 0) continue;  // shade layers follow their bases
     occluders.push_back(
         {layer.id, layer.group, layers::convex_bodies(authored.bounds[layer.id], state.world_points)});
   }
@@ -160,6 +161,14 @@ void place_groups(const Pipeline& authored, PipelineState& state, const std::vec
   }
 }
 
+/// Shade layers lie directly in front of their bases; an aggregate holds the terms of its members itself.
+void add_shade_layers(const Pipeline& authored, const PipelineState& state, FrameOrder& order) {
+  const std::vector<Layer>& all = with_aggregates(authored, state).layers.layers;
+  order.back_to_front = layers::with_shade_layers(all, order.back_to_front);
+  for (const Layer& layer : authored.layers.layers)
+    if (layer.base >= 0) order.merged_into[layer.id] = order.merged_into[layer.base];
+}
+
 // --- From frame to frame ---
 
 /// Notes which aggregates exist now and gives up those that are gone for long.
@@ -229,6 +238,7 @@ FrameOrder order_layers(const Pipeline& authored, PipelineState& state, int fram
     order.counters = visibility.counters;
     place_groups(authored, state, states, eye, visibility, order);
   }
+  add_shade_layers(authored, state, order);
   note_splits(state.order.merged_into, order);
   remember_order(authored, state, frame, order);
   order.sort_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

@@ -17,7 +17,7 @@ std::vector<int> matching(const LayerPairEntry& entry, const std::string& glob,
                           std::span<const Layer> layers) {
   std::vector<int> ids;
   for (const Layer& layer : layers)
-    if (layers::glob_matches(glob, layer.name)) ids.push_back(layer.id);
+    if (layer.base < 0 && layers::glob_matches(glob, layer.name)) ids.push_back(layer.id);
   if (ids.empty())
     fail(entry, "'" + glob + "' matches no layer, rule: the name of a layer, * any run, ? one character");
   return ids;

@@ -6,6 +6,7 @@
 #include "fiducials/fiducials.h"
 #include "sequences/motion_blur.h"
 #include "sequences/light_planning.h"
+#include "layers/shade_state.h"
 #include "warp/shade.h"
 
 namespace talisman::sequences {
@@ -70,8 +71,14 @@ const std::vector<LayerState>& states_at(const Pipeline& authored, PipelineState
     LayerState& layer_state = captured.states[layer.id];
     if (layer_state.layer == layer.id || !exists_now(pipeline, state, layer.id)) continue;
     if (!scene_frame) scene_frame = pipeline.scene.at(time_of(pipeline, frame));
-    layer_state = layers::capture(*scene_frame, layer, pipeline.bounds[layer.id], pipeline.settings.view);
+    layer_state =
+        layer.base >= 0
+            ? layers::shade_state(captured.states[layer.base], layer)
+            : layers::capture(*scene_frame, layer, pipeline.bounds[layer.id], pipeline.settings.view);
   }
+  if (!scene_frame) return captured.states;
+  layers::capture_influences(*scene_frame, pipeline.layers, captured.states);
+  captured.shadow_maps = shadow_map_keys(pipeline, *scene_frame);
   return captured.states;
 }
 
@@ -128,6 +135,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));
+  assessment.held_geometric_px += assessment.fiducials.shade.px;
   return assessment;
 }
 

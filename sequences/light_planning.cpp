@@ -26,9 +26,15 @@ void follow_light_and_faces(const layers::Scene& scene, const layers::LayerSet& 
     bounds[i].surface_why_not = "no option follows the light";
     if (!light) continue;
     const layers::Layer& layer = layers.layers[i];
+    if (layer.base >= 0) {
+      bounds[i].surface_why_not = "a shade layer follows where its term lies";
+      continue;
+    }
     const layers::LightChange change = layers::light_change_of(scene, layer, carriers);
     bounds[i].surface_why_not = change.why_not;
-    if (change.possible()) bounds[i].surface = layers::mean_surface(scene, layer);
+    if (!change.possible()) continue;
+    bounds[i].surface = layers::mean_surface(scene, layer);
+    if (layer.factored.specular) bounds[i].surface->specular = layers::dvec3(0.0);  // in a sprite of its own
   }
 }
 

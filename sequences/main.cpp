@@ -73,6 +73,8 @@ void add_picture_options(CLI::App& command, CommandLine& line) {
   command.add_option("--compression", line.compression,
                      "keep sprites compressed: quality 1 to 100 (about 10:1 at 85), 0: none");
   command.add_flag("--video", line.video, "also write video.mp4");
+  command.add_flag("--separate", line.separate,
+                   "also write each shade sprite alone, and the sum with its base (DIR/separate)");
   command.add_flag("--overlay", line.overlay, "draw each sprite's outline, coloured by age");
   command.add_flag("--quality", line.quality,
                    "PSNR, SSIM and FLIP of each frame against reference and direct (slow)");

@@ -169,6 +169,7 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
              std::array{std::pair{"auto", ProgressKind::Auto}, std::pair{"bar", ProgressKind::Bar},
                         std::pair{"plain", ProgressKind::Plain}, std::pair{"none", ProgressKind::None}});
   options.video = line.video;
+  options.separate = line.separate;
   options.overlay = line.overlay;
   options.quality = line.quality;
   options.resume = line.resume;

@@ -26,7 +26,7 @@ struct CommandLine {
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says
   std::optional<std::int64_t> budget_polygons, budget_pixels;
   int threads = 0;  ///< 0: all cores
-  bool video = false, overlay = false, quality = false, resume = false;
+  bool video = false, separate = false, overlay = false, quality = false, resume = false;
 };
 
 struct ResolvedRun {

@@ -81,6 +81,7 @@ Json json_of(const regulator::LayerAssessment& a) {
           {"photometric", json_of(f.photometric)},
           {"turned_px", f.turned.computed ? Json(f.turned.px) : Json(nullptr)},
           {"turned_faces", f.turned.count},
+          {"shade_px", f.shade.computed ? Json(f.shade.px) : Json(nullptr)},
           {"matched_points", a.matched_points},
           {"fit", warp::name(a.fitted.status)},
           {"frames_since_render", a.frames_since_render}};
@@ -102,7 +103,10 @@ struct CountField {
 constexpr CountField kCounts[] = {{"layers_in_view", &FrameLine::layers_in_view},
                                   {"renders", &FrameLine::renders},
                                   {"reuses", &FrameLine::reuses},
-                                  {"layers_assessed", &FrameLine::layers_assessed}};
+                                  {"layers_assessed", &FrameLine::layers_assessed},
+                                  {"shadow_maps_drawn", &FrameLine::shadow_maps_drawn},
+                                  {"shadow_maps_reused", &FrameLine::shadow_maps_reused},
+                                  {"reflections_drawn", &FrameLine::reflections_drawn}};
 constexpr IntField kTotals[] = {{"polygons_rendered", &FrameLine::polygons_rendered},
                                 {"polygons_reference", &FrameLine::polygons_reference},
                                 {"pixels_rendered", &FrameLine::pixels_rendered},
@@ -178,6 +182,10 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
     ++line.layers_in_view;
     line.polygons_reference += pipeline.layers.layers[d.layer].polygons;
   }
+  line.shadow_maps_drawn = report.shade.shadow_maps_drawn;
+  line.shadow_maps_reused = report.shade.shadow_maps_reused;
+  line.reflections_drawn = report.shade.reflections_drawn;
+  line.polygons_rendered += report.shade.shadow_polygons;
   line.pixels_reference = report.pixels_reference;
   line.plan_ms = report.times.plan_ms;
   if (report.order.sorted)
@@ -276,7 +284,8 @@ LayerSummary row_of(const layers::Layer& layer) {
 
 /// Is the effect at work when this layer is rendered? In an aggregate it is if one of the members uses it.
 bool is_drawn_with(const layers::EffectCall& effect, const layers::Layer& layer) {
-  if (effect.effect == layers::Effect::VisibilitySort) return false;  // no matter of rendering
+  if (effect.effect == layers::Effect::VisibilitySort || effect.effect == layers::Effect::ShadowMap)
+    return false;  // counted by itself
   const auto uses = [&](int id) {
     return std::find(effect.layers.begin(), effect.layers.end(), id) != effect.layers.end();
   };
@@ -307,6 +316,8 @@ void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport
   for (std::size_t e = 0; e < summary.effects.size(); ++e)
     if (summary.effects[e].effect == layers::Effect::VisibilitySort)
       summary.effect_passes[e] += report.order.sorted;
+    else if (summary.effects[e].effect == layers::Effect::ShadowMap)
+      summary.effect_passes[e] += report.shade.shadow_maps_drawn;
   for (const regulator::LayerDecision& d : report.plan.decisions) {
     if (d.action == regulator::Action::Drop) continue;
     LayerSummary& layer = summary.layers[d.layer];

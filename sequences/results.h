@@ -40,7 +40,8 @@ struct FrameLine {
   int frame = 0;
   std::string frame_hash;  ///< FNV-1a 64 of the linear picture, hexadecimal; empty when only planned
   int layers_in_view = 0, renders = 0, reuses = 0, layers_assessed = 0;
-  std::int64_t polygons_rendered = 0;   ///< triangles of the layers rendered
+  int shadow_maps_drawn = 0, shadow_maps_reused = 0, reflections_drawn = 0;  ///< passes, as planned
+  std::int64_t polygons_rendered = 0;   ///< triangles of the layers rendered, and of casters in shadow maps
   std::int64_t polygons_reference = 0;  ///< triangles of all layers in view
   std::int64_t pixels_rendered = 0;     ///< texels of the rectangles of the sprites rendered
   std::int64_t pixels_reference = 0;    ///< the same for all layers in view
@@ -96,7 +97,8 @@ struct Summary {
   bool planned_only = false;
   std::vector<LayerSummary> layers;
   std::vector<layers::EffectCall> effects;
-  std::vector<int> effect_passes;  ///< renders of layers that use the effect, one per entry of `effects`
+  /// One per entry of `effects`: renders of layers that use it; for shadow maps the maps drawn.
+  std::vector<int> effect_passes;
   std::vector<FrameLine> frames;
 
   /// Over the author's layers; a render of an aggregate counts for each of its members.

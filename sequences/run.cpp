@@ -12,6 +12,7 @@
 #include "sequences/frame_writer.h"
 #include "sequences/line_file.h"
 #include "sequences/overlay.h"
+#include "sequences/separate.h"
 
 namespace talisman::sequences {
 
@@ -152,6 +153,7 @@ class Runner {
       : options_(options), pipeline_(*sequence.scene, sequence.layers, settings), state_(pipeline_) {
     make_folder(options.out);
     if (!options.plan_only) make_folder(options.out + "/frames");
+    if (options.separate) make_folder(options.out + "/separate");
     const Json identity = identity_of(sequence, settings, options);
     if (options.resume) kept_ = complete_frames(options, identity);
     if (kept_.empty()) remove_old_results(options);
@@ -207,6 +209,8 @@ class Runner {
   void hand_over(FrameReport report) {
     std::optional<FrameQuality> quality;
     if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
+    if (prepared_ && options_.separate)
+      write_separate(with_aggregates(pipeline_, state_), state_, report, options_.out + "/separate");
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     // The aggregates may grow meanwhile; those of this frame stay as they are as long as they are held.
     writer_.submit([this, shared, quality, grown = state_.order.grown] {

@@ -22,6 +22,7 @@ struct RunOptions {
   int first_frame = 0, last_frame = 0;  ///< inclusive
   FrameFormat format = FrameFormat::Png;
   bool plan_only = false;  ///< decisions and costs without pixels
+  bool separate = false;   ///< also each shade sprite alone, and the sums, in DIR/separate
   bool video = false, overlay = false, quality = false, resume = false;
   ProgressKind progress = ProgressKind::Auto;
 };

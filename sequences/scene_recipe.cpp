@@ -156,16 +156,25 @@ void read_kind(YamlMap& map, ShapeContent& shape) {
 }
 
 void read_material(YamlMap& map, layers::Material& material) {
-  double opacity = 1, shininess = 0;
+  double opacity = 1, shininess = 0, reflectivity = 0;
   map.read_color("color", material.base_color);
   map.read_color("specular", material.specular);
   map.read_color("emissive", material.emissive);
   map.read("opacity", opacity, {0, 1});
   map.read("shininess", shininess, {0, 1e5});
+  map.read("reflectivity", reflectivity, {0, 1});
   map.read("two_sided", material.two_sided);
   map.read("unlit", material.unlit);
+  material.reflectivity = static_cast<float>(reflectivity);
   material.opacity = static_cast<float>(opacity);
   material.shininess = static_cast<float>(shininess);
+}
+
+/// The keys texture2 and texture_blend.
+void read_second_texture(YamlMap& map, const YamlValue& texture, ShapeContent& content) {
+  content.second_texture_file = asset(texture);
+  if (const YamlValue* blend = map.find("texture_blend"))
+    content.material.texture_blend = layers::vec2(blend->pair({0, 1}));
 }
 
 ShapeRecipe read_shape(YamlMap map) {
@@ -184,6 +193,7 @@ ShapeRecipe read_shape(YamlMap map) {
   }
   read_material(map, content.material);
   if (const YamlValue* texture = map.find("texture")) content.texture_file = asset(*texture);
+  if (const YamlValue* texture = map.find("texture2")) read_second_texture(map, *texture, content);
   shape.instances = read_instances(map, id);
   map.finish();
   return shape;
@@ -277,22 +287,65 @@ CameraRecipe read_camera(YamlMap map) {
   return camera;
 }
 
-layers::Light read_light(YamlMap map) {
+layers::ShadowMapOptions read_shadow_map(YamlMap map) {
+  layers::ShadowMapOptions shadow;
+  double bias = shadow.bias_texels, slope = shadow.slope_bias;
+  map.read("resolution_px", shadow.resolution_px, 0, 8192);
+  map.read("bias_texels", bias, {0, 100});
+  map.read("slope_bias", slope, {0, 16});
+  map.read("pcf_radius", shadow.pcf_radius, 0, 8);
+  map.finish();
+  shadow.bias_texels = static_cast<float>(bias);
+  shadow.slope_bias = static_cast<float>(slope);
+  return shadow;
+}
+
+/// The keys inner_deg and outer_deg: angles from the axis.
+void read_cone(YamlMap& map, layers::Light& light) {
+  double inner = 20, outer = 30;
+  map.read("inner_deg", inner, {0, 90});
+  map.read("outer_deg", outer, {0, 90});
+  if (inner > outer) map.self().fail("inner_deg at most outer_deg");
+  light.inner_cone_rad = glm::radians(inner);
+  light.outer_cone_rad = glm::radians(outer);
+}
+
+/// A light that stands (position, look_at) or moves as anything does. In its own space it shines along -z.
+void read_place(YamlMap& map, layers::Light& light, std::optional<Motion>& motion) {
+  for (const char* key : {"carried_by", "flight", "spin", "look_at"})
+    if (map.has(key) || light.kind == layers::Light::Kind::Spot) motion.emplace();
+  if (motion) {
+    motion = read_motion(map);
+    light.direction = {0, 0, -1};
+  } else {
+    light.position = map.need("position").vector();
+  }
+}
+
+void read_light(YamlMap map, SceneRecipe& recipe) {
+  using Kind = layers::Light::Kind;
   layers::Light light;
+  std::optional<Motion> motion;
   double intensity = 1;
-  light.kind = static_cast<layers::Light::Kind>(map.need("kind").choice({"ambient", "directional", "point"}));
+  light.kind = static_cast<Kind>(map.need("kind").choice({"ambient", "directional", "point", "spot"}));
   map.read("name", light.name);
   map.read_color("color", light.color);
   map.read("intensity", intensity, kNotNegative);
   light.color *= static_cast<float>(intensity);
-  if (light.kind == layers::Light::Kind::Directional) {
+  if (light.kind == Kind::Directional) {
     const YamlValue& direction = map.need("direction");
     light.direction = direction.vector();
     if (glm::length(light.direction) == 0) direction.fail("not the zero vector");
   }
-  if (light.kind == layers::Light::Kind::Point) light.position = map.need("position").vector();
+  if (light.kind == Kind::Point || light.kind == Kind::Spot) read_place(map, light, motion);
+  if (light.kind == Kind::Spot) read_cone(map, light);
+  if (light.kind != Kind::Ambient) {
+    map.read("casts_shadow", light.casts_shadow);
+    if (const YamlValue* shadow = map.find("shadow_map")) light.shadow = read_shadow_map(shadow->map());
+  }
   map.finish();
-  return light;
+  recipe.lights.push_back(light);
+  recipe.light_motions.push_back(std::move(motion));
 }
 
 }  // namespace
@@ -308,7 +361,7 @@ SceneRecipe read_scene_recipe(YamlMap& sequence) {
   if (const YamlValue* sky = sequence.find("sky")) recipe.sky = read_sky(sky->map());
   if (const YamlValue* camera = sequence.find("camera")) recipe.camera = read_camera(camera->map());
   if (const YamlValue* lights = sequence.find("lights"))
-    for (const YamlValue& item : lights->items()) recipe.lights.push_back(read_light(item.map()));
+    for (const YamlValue& item : lights->items()) read_light(item.map(), recipe);
   return recipe;
 }
 

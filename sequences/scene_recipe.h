@@ -61,6 +61,7 @@ struct SceneRecipe {
   std::optional<SkyContent> sky;
   std::optional<CameraRecipe> camera;
   std::vector<layers::Light> lights;
+  std::vector<std::optional<Motion>> light_motions;  ///< one per light; empty: it stands in the world
   layers::vec3 background{0, 0, 0};
 };
 

@@ -41,6 +41,37 @@ layers::LayerPreferences read_preferences(YamlMap map) {
   return preferences;
 }
 
+/// Values over time, 0 … 1: one number, or a list of {t, value}.
+layers::Keys<double> read_multiplier(const YamlValue& value) {
+  layers::Keys<double> keys;
+  if (!value.is_list()) return {{0}, {value.number({0, 1})}, layers::Interpolation::Step};
+  for (const YamlValue& item : value.items()) {
+    YamlMap map = item.map();
+    const YamlValue& time = map.need("t");
+    if (!keys.times_s.empty() && time.number() <= keys.times_s.back()) time.fail("after the key before it");
+    keys.times_s.push_back(time.number());
+    keys.values.push_back(map.need("value").number({0, 1}));
+    map.finish();
+  }
+  return keys;
+}
+
+layers::ShadingSpec read_shading(YamlMap map) {
+  layers::ShadingSpec shading;
+  if (const YamlValue* term = map.find("shadows")) shading.shadows = read_preferences(term->map());
+  if (const YamlValue* term = map.find("specular")) shading.specular = read_preferences(term->map());
+  if (const YamlValue* term = map.find("reflection")) shading.reflection = read_preferences(term->map());
+  if (const YamlValue* term = map.find("textures")) shading.textures = read_preferences(term->map());
+  for (const auto& [key, keys] :
+       {std::pair{"first_blend", &shading.first_blend}, std::pair{"second_blend", &shading.second_blend}})
+    if (const YamlValue* blend = map.find(key)) {
+      if (!shading.textures) blend->fail("only together with textures");
+      *keys = read_multiplier(*blend);
+    }
+  map.finish();
+  return shading;
+}
+
 LayerEntry read_layer(const YamlValue& value) {
   YamlMap map = value.map();
   LayerEntry entry;
@@ -53,6 +84,9 @@ LayerEntry read_layer(const YamlValue& value) {
         static_cast<layers::OrderGroup>(group->choice({"background", "normal", "foreground"}) - 1);
   if (const YamlValue* preferences = map.find("preferences"))
     entry.spec.preferences = read_preferences(preferences->map());
+  if (const YamlValue* shading = map.find("shading")) entry.spec.shading = read_shading(shading->map());
+  if (const YamlValue* fade = map.find("fade")) entry.spec.fade = read_multiplier(*fade);
+  map.read("casts_shadows", entry.spec.casts_shadows);
   map.finish();
   return entry;
 }

@@ -60,6 +60,7 @@ SharedContent add_content(layers::Scene& scene, const layers::Scene& model, bool
   const SharedContent at{scene.meshes.size(), scene.materials.size()};
   for (layers::Material material : model.materials) {
     material.texture = shifted(material.texture, scene.textures.size());
+    material.texture2 = shifted(material.texture2, scene.textures.size());
     material.two_sided |= two_sided;
     scene.materials.push_back(std::move(material));
   }
@@ -133,6 +134,10 @@ void add_shape(BuiltScene& built, const ShapeRecipe& recipe) {
     material.texture = static_cast<int>(scene.textures.size());
     scene.textures.push_back(read_texture(recipe.content.texture_file));
   }
+  if (!recipe.content.second_texture_file.empty()) {
+    material.texture2 = static_cast<int>(scene.textures.size());
+    scene.textures.push_back(read_texture(recipe.content.second_texture_file));
+  }
   const int mesh = static_cast<int>(scene.meshes.size());
   scene.meshes.push_back(shape_mesh(recipe.content));
   scene.meshes.back().name = material.name;
@@ -155,6 +160,15 @@ void add_camera(BuiltScene& built, const CameraRecipe& recipe) {
   camera.near_m = recipe.near_m;
   camera.far_m = recipe.far_m;
   scene.cameras.push_back(camera);
+}
+
+void add_lights(BuiltScene& built, const SceneRecipe& recipe) {
+  for (std::size_t i = 0; i < recipe.lights.size(); ++i) {
+    layers::Light light = recipe.lights[i];
+    const std::string name = light.name.empty() ? "light " + std::to_string(i) : light.name;
+    if (recipe.light_motions[i]) light.node = add_motion(built, name, *recipe.light_motions[i]);
+    built.scene.lights.push_back(std::move(light));
+  }
 }
 
 // --- Where a file has no camera and no light ---
@@ -222,7 +236,7 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);
   for (const ModelRecipe& model : recipe.models) add_model(built, model);
   if (recipe.camera) add_camera(built, *recipe.camera);
-  built.scene.lights = recipe.lights;
+  add_lights(built, recipe);
   add_default_view(built.scene);
   return built;
 }

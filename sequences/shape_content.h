@@ -25,7 +25,8 @@ struct ShapeContent {
       32;  ///< sphere and cylinder: 3 … 512 around; box and plane: 1 … 512 per side; triangles grow with it
            ///< (sphere, box, plane: with its square), and lights per vertex are the more exact
   layers::Material material;
-  std::string texture_file;  ///< empty: none
+  std::string texture_file;         ///< empty: none
+  std::string second_texture_file;  ///< Material::texture2, likewise
 };
 
 /// The surface in the shape's own space, counter-clockwise from outside, with normals and texture

@@ -82,22 +82,27 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
           looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
       memory = {states_at(pipeline, state, instant)[decision.layer],
                 placement_at(pipeline, state, decision.layer, instant), report.frame, instant, false};
-      decision.cost = cost_of(pipeline.layers.layers[decision.layer], memory.placement.size_px);
+      const Layer& layer = pipeline.layers.layers[decision.layer];
+      decision.cost = cost_of(layer, memory.placement.size_px);
+      state.shade_plan.add_render(pipeline, layer, state.captured.at(instant).shadow_maps, report.shade);
     }
     decision.depicts_frame = memory.depicts_frame;
   }
 }
 
 /// The sprites of this frame, back to front, each with the map that puts it in its place.
-std::vector<ShownSprite> sprites_shown(const PipelineState& state, const FrameReport& report) {
+std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineState& state,
+                                       const FrameReport& report) {
   std::vector<ShownSprite> shown;
   for (const int layer : report.order.back_to_front) {
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
+    SpriteMultipliers multipliers =
+        multipliers_at(pipeline.layers.layers[layer], time_of(pipeline, report.frame));
+    multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
-                     memory.placement.size_px, report.frame - memory.frame_rendered,
-                     layers::vec3(decision.shown_color)});
+                     memory.placement.size_px, report.frame - memory.frame_rendered, multipliers});
   }
   return shown;
 }
@@ -113,9 +118,8 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
     if (instant != report.frame && others.count(instant) == 0)
       others.emplace(instant, pipeline.scene.at(time_of(pipeline, instant)));
     chunker::RenderResult result =
-        chunker::render(prepared, instant != report.frame ? others.at(instant) : now,
-                        pipeline.layers.layers[sprite.layer].parts, pipeline.settings.view.display_px,
-                        memory.placement, pipeline.settings.render);
+        draw_layer(pipeline, state.shadow_maps, prepared, instant != report.frame ? others.at(instant) : now,
+                   pipeline.layers.layers[sprite.layer], memory.placement);
     const bool is_late = memory.frame_rendered != report.frame;
     if (pipeline.settings.compression)
       keep_compressed(sprite.layer, result.sprite, *pipeline.settings.compression, state.compressed,
@@ -140,7 +144,8 @@ chunker::CompositeResult composite_shown(const Pipeline& pipeline, const std::ve
     chunker::PlacedSprite p;
     p.sprite = sprites.find(sprite.layer);
     p.screen_from_sprite = sprite.screen_from_sprite;
-    p.color_multiplier = sprite.color_multiplier;
+    p.alpha_multiplier = sprite.multipliers.alpha;
+    p.color_multiplier = sprite.multipliers.color;
     placed.push_back(p);
   }
   return chunker::composite(placed, pipeline.settings.view.display_px, pipeline.scene.background);
@@ -156,16 +161,12 @@ chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& 
 
 /// All parts in one pass of the renderer into one display-sized sprite: the picture without layers.
 chunker::CompositeResult draw_in_one_pass(const Pipeline& pipeline, const SceneFrame& scene_frame,
-                                          const chunker::PreparedScene& prepared,
+                                          const chunker::PreparedScene& prepared, ShadowMapStore& maps,
                                           chunker::RenderCounters& counters) {
-  std::vector<int> parts;
-  for (const Layer& layer : pipeline.layers.layers)
-    if (!layer.is_aggregate()) parts.insert(parts.end(), layer.parts.begin(), layer.parts.end());
   SpritePlacement whole_display;
   whole_display.size_px = pipeline.settings.view.display_px;
   const chunker::RenderResult result =
-      chunker::render(prepared, scene_frame, parts, pipeline.settings.view.display_px, whole_display,
-                      pipeline.settings.render);
+      draw_all_in_one_pass(pipeline, maps, prepared, scene_frame, whole_display);
   counters += result.counters;
   chunker::PlacedSprite placed;
   placed.sprite = &result.sprite;
@@ -177,7 +178,7 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
   chunker::CompositeResult result;
   const Stopwatch render_watch;
   if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
-    result = draw_in_one_pass(pipeline, now, prepared, report.render);
+    result = draw_in_one_pass(pipeline, now, prepared, state.shadow_maps, report.render);
     report.times.render_ms = render_watch.ms();
   } else {
     if (pipeline.settings.compression) report.compression.emplace();
@@ -236,7 +237,7 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);
   explain_order(pipeline, report);
-  report.shown = sprites_shown(state, report);
+  report.shown = sprites_shown(pipeline, state, report);
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.
@@ -246,7 +247,9 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
 
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
   chunker::RenderCounters ignored;
-  return draw_in_one_pass(pipeline, pipeline.scene.at(time_of(pipeline, frame)), prepared, ignored).frame;
+  ShadowMapStore maps;
+  return draw_in_one_pass(pipeline, pipeline.scene.at(time_of(pipeline, frame)), prepared, maps, ignored)
+      .frame;
 }
 
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {

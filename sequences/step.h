@@ -26,6 +26,7 @@
 #include "regulator/plan.h"
 #include "sequences/sprite_compression.h"
 #include "sequences/aggregates.h"
+#include "sequences/shade_passes.h"
 #include "warp/fit.h"
 
 namespace talisman::sequences {
@@ -74,6 +75,7 @@ struct CapturedFrame {
   std::vector<layers::LayerState> states;                          ///< by layer id
   std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
   int generation = -1;  ///< OrderMemory::generation: aggregates that exist since then are not captured yet
+  std::vector<ShadowMapKey> shadow_maps;  ///< by light; empty where no shadow is called for
 };
 
 /// All that survives a frame.
@@ -83,6 +85,8 @@ struct PipelineState {
   chunker::SpriteStore sprites;     ///< as the compositor shows them: decompressed if they are compressed
   CompressedSprites compressed;     ///< empty unless Settings::compression asks for it
   OrderMemory order;
+  ShadePlan shade_plan;
+  ShadowMapStore shadow_maps;
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
 };
 
@@ -96,7 +100,7 @@ struct ShownSprite {
   layers::dmat3 screen_from_sprite{1.0};
   layers::ivec2 size_px{0, 0};
   int age_frames = 0;
-  layers::vec3 color_multiplier{1, 1, 1};
+  SpriteMultipliers multipliers;
 };
 
 struct FrameReport {
@@ -113,6 +117,7 @@ struct FrameReport {
   chunker::CompositeCounters composite;
   std::optional<CompressionReport> compression;  ///< of the sprites drawn for this frame, and of its reads
   std::int64_t sprite_bytes = 0;                 ///< in the store after this frame
+  ShadeCounters shade;                           ///< passes behind shadows and reflections, as planned
   int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
   StageTimes times;
   chunker::Frame picture;  ///< empty when only planned

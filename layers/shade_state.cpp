@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/shade_state.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "layers/shading.h"
+
+namespace talisman::layers {
+
+namespace {
+
+constexpr double kMargin = 0.1;    ///< of the receiver's size: its characteristic points are not its outline
+constexpr double kGrazing = 1e-9;  ///< sine of the angle below which a ray is parallel to the surface
+const dvec3 kNowhere(std::numeric_limits<double>::quiet_NaN());
+
+bool exists(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+struct Plane {
+  dvec3 point, normal;  ///< world, unit normal
+};
+
+Plane to_world(const SceneFrame& frame, const SurfacePlane& plane) {
+  const dmat4& m = frame.world_from_node[plane.node];
+  const dvec3 normal = glm::transpose(glm::inverse(dmat3(m))) * plane.normal;
+  return {dvec3(m * dvec4(plane.point, 1)), normal / glm::length(normal)};
+}
+
+dvec3 mirrored(const Plane& plane, const dvec3& p) {
+  return p - 2 * glm::dot(plane.normal, p - plane.point) * plane.normal;
+}
+
+/// Where the ray from `from` through `to`, as long as it likes, meets the plane.
+dvec3 hit(const Plane& plane, const dvec3& from, const dvec3& to) {
+  const dvec3 ray = to - from;
+  const double slope = glm::dot(plane.normal, ray), height = glm::dot(plane.normal, plane.point - from);
+  if (!(std::fabs(slope) > kGrazing * glm::length(ray))) return kNowhere;
+  const double t = height / slope;
+  return t > 0 ? from + t * ray : kNowhere;
+}
+
+dvec3 hit_along(const Plane& plane, const dvec3& from, const dvec3& direction) {
+  return hit(plane, from, from + direction);
+}
+
+/// One receiver at one instant.
+class Receiver {
+ public:
+  Receiver(const SceneFrame& frame, const LayerSet& set, std::span<const LayerState> states,
+           const Layer& layer)
+      : frame_(frame), set_(set), states_(states), layer_(layer), own_(states[layer.id]) {
+    const Scene& scene = *frame.scene;
+    const int node = layer.rigid_node >= 0 ? layer.rigid_node : scene.parts[layer.parts.front()].node;
+    world_from_receiver_ = frame.world_from_node[node];
+    receiver_from_world_ = glm::inverse(world_from_receiver_);
+    if (layer.plane) plane_ = to_world(frame, *layer.plane);
+    eye_ = dvec3(frame.camera.world_from_camera[3]);
+    const WorldBounds world = bounds_of(own_.world_points);
+    center_ = 0.5 * (world.lo + world.hi);
+    radius_ =
+        0.5 * std::fmax(world.hi.x - world.lo.x, std::fmax(world.hi.y - world.lo.y, world.hi.z - world.lo.z));
+    std::vector<dvec3> own_places;
+    for (const dvec3& p : own_.world_points) own_places.push_back(to_receiver(p));
+    bounds_ = bounds_of(own_places);
+    const dvec3 margin(bounds_.empty() ? 0 : kMargin * glm::length(bounds_.hi - bounds_.lo));
+    bounds_.lo -= margin;
+    bounds_.hi += margin;
+  }
+
+  const dmat4& world_from_receiver() const { return world_from_receiver_; }
+
+  std::vector<ShadeTrace> traces() const {
+    std::vector<ShadeTrace> traces;
+    if (own_.world_points.empty() || !exists(receiver_from_world_ * dvec4(center_, 1))) return traces;
+    const Scene& scene = *frame_.scene;
+    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+      const int light = static_cast<int>(i);
+      if (layer_.holds.shadows && scene.lights[i].casts_shadow && (layer_.light < 0 || layer_.light == light))
+        for (const int caster : layer_.casters) add(traces, shadow(light, caster));
+      if (layer_.kind == LayerKind::Specular && scene.lights[i].kind != Light::Kind::Ambient)
+        add(traces, highlight(light));
+    }
+    if (layer_.holds.reflection && plane_)
+      for (const int source : layer_.reflected) add(traces, reflection(source));
+    return traces;
+  }
+
+ private:
+  dvec3 to_receiver(const dvec3& world) const { return dvec3(receiver_from_world_ * dvec4(world, 1)); }
+
+  bool is_directional(int light) const { return frame_.lights[light].kind == Light::Kind::Directional; }
+
+  /// From a place to the light, unit length.
+  dvec3 to_light(int light, const dvec3& from) const {
+    const LightState& l = frame_.lights[light];
+    return is_directional(light) ? -l.direction : glm::normalize(l.position - from);
+  }
+
+  /// The surface for shadows: the receiver's plane, or the one through its centre that faces the light.
+  Plane surface(int light) const { return plane_ ? *plane_ : Plane{center_, to_light(light, center_)}; }
+
+  ShadeTrace shadow(int light, int caster) const {
+    ShadeTrace trace{ShadeTrace::Kind::Shadow, light, caster, false, {}};
+    const Plane plane = surface(light);
+    const LightState& l = frame_.lights[light];
+    bool before_surface = false;  // some of the caster is between the light and the receiver
+    for (const dvec3& c : states_[caster].world_points) {
+      const dvec3 way = is_directional(light) ? l.direction : c - l.position;
+      // A caster's point may lie behind a curved receiver's centre and still be part of what casts: rays of
+      // directional lights are followed both ways.
+      dvec3 place = is_directional(light) ? hit_along(plane, c, way) : hit(plane, l.position, c);
+      if (!exists(place) && is_directional(light)) place = hit_along(plane, c, -way);
+      const double beyond = glm::dot(c - place, way) / std::fmax(glm::length(way), 1e-300);
+      before_surface = before_surface || (exists(place) && beyond < (plane_ ? 0 : radius_));
+      trace.places.push_back(place);
+    }
+    trace.on_receiver = before_surface;
+    return trace;
+  }
+
+  ShadeTrace highlight(int light) const {
+    ShadeTrace trace{ShadeTrace::Kind::Highlight, light, -1, true, {}};
+    if (!plane_) {
+      const dvec3 half = to_light(light, center_) + glm::normalize(eye_ - center_);
+      trace.places.push_back(center_ + radius_ * glm::normalize(half));
+      return trace;
+    }
+    const dvec3 image = mirrored(*plane_, eye_);
+    dvec3 place = kNowhere;
+    if (is_directional(light)) {
+      place = hit_along(*plane_, image, -frame_.lights[light].direction);
+    } else {
+      place = hit(*plane_, image, frame_.lights[light].position);
+      const double height = glm::dot(plane_->normal, frame_.lights[light].position - plane_->point);
+      if (height * glm::dot(plane_->normal, eye_ - plane_->point) <= 0) place = kNowhere;
+    }
+    trace.places.push_back(place);
+    return trace;
+  }
+
+  ShadeTrace reflection(int source) const {
+    ShadeTrace trace{ShadeTrace::Kind::Reflection, -1, source, true, {}};
+    const double eye_height = glm::dot(plane_->normal, eye_ - plane_->point);
+    for (const dvec3& c : states_[source].world_points) {
+      const bool before = glm::dot(plane_->normal, c - plane_->point) * eye_height > 0;
+      trace.places.push_back(before ? hit(*plane_, eye_, mirrored(*plane_, c)) : kNowhere);
+    }
+    return trace;
+  }
+
+  /// Finishes a trace whose places are still in the world.
+  void add(std::vector<ShadeTrace>& traces, ShadeTrace trace) const {
+    WorldBounds bounds;
+    for (dvec3& place : trace.places) {
+      place = to_receiver(place);
+      if (!exists(place)) continue;
+      bounds.lo = glm::min(bounds.lo, place);
+      bounds.hi = glm::max(bounds.hi, place);
+    }
+    bool meets = !bounds.empty();
+    for (int k = 0; meets && k < 3; ++k)
+      meets = bounds.lo[k] <= bounds_.hi[k] && bounds.hi[k] >= bounds_.lo[k];
+    trace.on_receiver = trace.on_receiver && meets;
+    traces.push_back(std::move(trace));
+  }
+
+  const SceneFrame& frame_;
+  const LayerSet& set_;
+  std::span<const LayerState> states_;
+  const Layer& layer_;
+  const LayerState& own_;
+  dmat4 world_from_receiver_{1.0}, receiver_from_world_{1.0};
+  std::optional<Plane> plane_;
+  dvec3 eye_{0}, center_{0};
+  double radius_ = 0;
+  WorldBounds bounds_;
+};
+
+std::vector<dmat4> influence_matrices(const SceneFrame& frame, const LayerSet& set, const Layer& layer) {
+  std::vector<dmat4> matrices;
+  if (!layer.casters.empty()) matrices = part_matrices(frame, set.casting_parts);
+  for (const int id : layer.reflected) {
+    const std::vector<dmat4> of_layer = part_matrices(frame, set.layers[id].parts);
+    matrices.insert(matrices.end(), of_layer.begin(), of_layer.end());
+  }
+  return matrices;
+}
+
+}  // namespace
+
+LayerState shade_state(const LayerState& base, const Layer& shade) {
+  LayerState state = base;
+  state.layer = shade.id;
+  return state;
+}
+
+void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<LayerState> states) {
+  for (const Layer& layer : set.layers) {
+    LayerState& state = states[layer.id];
+    if (state.layer != layer.id) continue;  // an aggregate that does not exist now
+    if (layer.kind == LayerKind::Shadow) state.lights = {frame.lights[layer.light]};
+    if (layer.holds.reflection)
+      state.lights = frame.lights;  // of what is mirrored, however the mirror is lit
+    if (layer.casters.empty() && layer.reflected.empty() && layer.kind != LayerKind::Specular) continue;
+    state.world_from_influence = influence_matrices(frame, set, layer);
+    const Receiver receiver(frame, set, states, layer);
+    state.world_from_receiver = receiver.world_from_receiver();
+    state.traces = receiver.traces();
+  }
+}
+
+}  // namespace talisman::layers

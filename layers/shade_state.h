@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Beside its own parts, what determines the pixels of a sprite that holds shadows, highlights or
+/// reflections; and where those lie on the surface.
+///
+/// The surface that stands for a receiver is its plane (Layer::plane) where it is flat, else the plane
+/// through the centre of its characteristic points that faces the light. With light at l, eye e, its mirror
+/// image e', characteristic point c of a caster or of a mirrored layer, the *places* on that surface are
+///
+///   shadow       where the ray from l through c meets it
+///   highlight    where e' is seen from l (flat); centre + radius · (L + V) / |L + V| (not flat)
+///   reflection   where the mirror image of c is seen from e
+///
+/// in the space of the receiver, so that places stand still while light, eye, casters and receiver move
+/// together, and move only if a new picture would look different on the surface. A place that does not exist
+/// (the caster above the light, the mirrored point behind the mirror) is NaN. A trace is `on_receiver` where
+/// the bounds of its places, 10 % larger, meet those of the receiver.
+///
+/// Limits, stated: layers that deform are tracked in the space of their first part's node; only geometry's
+/// own highlights are left to the photometric fiducials; what changes inside a mirrored layer's picture (its
+/// shading, its own shadows) is seen by same_pixels but has no place.
+
+#include <span>
+
+#include "layers/layer.h"
+#include "layers/state.h"
+
+namespace talisman::layers {
+
+/// The state of a shade layer from that of its base: the same surface, seen by the same camera.
+LayerState shade_state(const LayerState& base, const Layer& shade);
+
+/// Fills world_from_influence, world_from_receiver and traces of those states whose layers hold a term that
+/// needs them (also Shadow's lights: only its own), from the characteristic points of all layers. `states` by
+/// layer id. Nothing is done or allocated for other layers. Cost: O(traced points).
+void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<LayerState> states);
+
+}  // namespace talisman::layers

@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/shade_passes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "chunker/mirror.h"
+#include "layers/animation.h"
+#include "sequences/step.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using chunker::ShadeInputs;
+using chunker::ShadeTerm;
+using layers::Affine2;
+using layers::dvec2;
+using layers::dvec3;
+using layers::dvec4;
+using layers::Layer;
+using layers::LayerKind;
+using layers::SceneFrame;
+using layers::SpritePlacement;
+
+ShadeTerm term_of(const Layer& layer) {
+  switch (layer.kind) {
+    case LayerKind::Geometry:
+      if (layer.factored.second_texture) return ShadeTerm::Texture1;
+      return layer.factored.specular ? ShadeTerm::Base : ShadeTerm::Full;
+    case LayerKind::Shadow:
+      return ShadeTerm::Shadow;
+    case LayerKind::Specular:
+      return ShadeTerm::Specular;
+    case LayerKind::Reflection:
+      return ShadeTerm::Reflection;
+    case LayerKind::Texture:
+      return ShadeTerm::Texture2;
+  }
+  return ShadeTerm::Full;
+}
+
+bool any_shadows(const Pipeline& pipeline) { return !pipeline.layers.casting_parts.empty(); }
+
+std::int64_t casting_polygons(const Pipeline& pipeline) {
+  std::int64_t polygons = 0;
+  for (const int part : pipeline.layers.casting_parts)
+    polygons += pipeline.scene.meshes[pipeline.scene.parts[part].mesh].triangle_count();
+  return polygons;
+}
+
+/// Pointers to the maps of `lights`, by index of Scene::lights.
+std::vector<const chunker::ShadowMap*> maps_for(const Pipeline& pipeline, ShadowMapStore& maps,
+                                                const SceneFrame& frame, const std::vector<int>& lights) {
+  std::vector<const chunker::ShadowMap*> by_light;
+  if (lights.empty()) return by_light;
+  const std::vector<ShadowMapKey> keys = shadow_map_keys(pipeline, frame);
+  by_light.resize(keys.size(), nullptr);
+  for (const int light : lights) by_light[light] = maps.find(pipeline, frame, light, keys[light]);
+  return by_light;
+}
+
+// --- Reflections ---
+
+struct WorldPlane {
+  dvec3 point, normal;
+  double height(const dvec3& p) const { return glm::dot(normal, p - point); }
+};
+
+WorldPlane mirror_of(const SceneFrame& frame, const Layer& layer) {
+  const layers::dmat4& world = frame.world_from_node[layer.plane->node];
+  const dvec3 normal = glm::transpose(glm::inverse(layers::dmat3(world))) * layer.plane->normal;
+  return {dvec3(world * dvec4(layer.plane->point, 1)), normal / glm::length(normal)};
+}
+
+/// The parts of the mirrored layers that reach before the mirror, on the eye's side.
+std::vector<int> parts_before(const Pipeline& pipeline, const SceneFrame& frame, const Layer& layer,
+                              const WorldPlane& mirror) {
+  const double eye = mirror.height(dvec3(frame.camera.world_from_camera[3]));
+  std::vector<int> parts;
+  for (const int id : layer.reflected) {
+    const Layer& seen = pipeline.layers.layers[id];
+    const auto points = layers::world_points(frame, seen, pipeline.bounds[id]);
+    if (std::any_of(points.begin(), points.end(), [&](const dvec3& p) { return mirror.height(p) * eye > 0; }))
+      parts.insert(parts.end(), seen.parts.begin(), seen.parts.end());
+  }
+  return parts;
+}
+
+/// An upright rectangle of the display around a sprite, as dense as the sprite is.
+SpritePlacement around(const SpritePlacement& sprite, int max_sprite_px) {
+  const Affine2& m = sprite.screen_from_sprite;
+  layers::RectD bounds;
+  for (const dvec2& corner : {dvec2{0, 0}, dvec2{1, 0}, dvec2{0, 1}, dvec2{1, 1}})
+    bounds.include(m(corner * dvec2(sprite.size_px)));
+  const double texel_px = std::sqrt(std::fabs(m.determinant()));
+  const double step = std::max({texel_px, bounds.width() / max_sprite_px, bounds.height() / max_sprite_px});
+  // One texel more on each side, and texels on pixels where their densities are equal.
+  const dvec2 lo = step * (glm::floor(bounds.lo / step) - 1.0);
+  const dvec2 count = glm::ceil((bounds.hi - lo) / step) + 1.0;
+  SpritePlacement placement;
+  placement.screen_from_sprite = {step, 0, lo.x, 0, step, lo.y};
+  placement.size_px = layers::ivec2(count);
+  return placement;
+}
+
+/// A picture of what `layer` mirrors, with the map that finds it.
+struct Mirrored {
+  chunker::RenderResult picture;
+  Affine2 reflection_from_screen;
+};
+
+Mirrored draw_mirrored(const Pipeline& pipeline, ShadowMapStore& maps, const chunker::PreparedScene& prepared,
+                       const SceneFrame& frame, const Layer& layer, const SpritePlacement& placement) {
+  Mirrored mirrored;
+  const WorldPlane mirror = mirror_of(frame, layer);
+  if (placement.empty() || !std::isfinite(mirror.height({0, 0, 0}))) return mirrored;
+  const SpritePlacement wide = around(placement, pipeline.settings.placement.max_sprite_px);
+  const std::optional<Affine2> reflection_from_screen = inverse(wide.screen_from_sprite);
+  if (!reflection_from_screen) return mirrored;
+  ShadeInputs inputs;
+  const auto by_light = maps_for(pipeline, maps, frame,
+                                 any_shadows(pipeline) ? shadow_lights(pipeline, layer) : std::vector<int>{});
+  inputs.shadow_maps = by_light;
+  mirrored.picture =
+      chunker::render(prepared, chunker::mirrored_frame(frame, mirror.point, mirror.normal),
+                      parts_before(pipeline, frame, layer, mirror), pipeline.settings.view.display_px, wide,
+                      pipeline.settings.render, inputs);
+  mirrored.reflection_from_screen = *reflection_from_screen;
+  return mirrored;
+}
+
+/// Draws `parts` as one term, with whatever `layer` holds.
+chunker::RenderResult draw_term(const Pipeline& pipeline, ShadowMapStore& maps,
+                                const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                                std::span<const int> parts, const Layer& layer, ShadeTerm term,
+                                const SpritePlacement& placement) {
+  ShadeInputs inputs;
+  inputs.term = term;
+  inputs.light = layer.light;
+  std::vector<const chunker::ShadowMap*> by_light;
+  if (layer.holds.shadows) by_light = maps_for(pipeline, maps, frame, shadow_lights(pipeline, layer));
+  inputs.shadow_maps = by_light;
+  Mirrored mirrored;
+  if (layer.holds.reflection) {
+    mirrored = draw_mirrored(pipeline, maps, prepared, frame, layer, placement);
+    inputs.reflection = &mirrored.picture.sprite;
+    inputs.reflection_from_screen = mirrored.reflection_from_screen;
+  }
+  chunker::RenderResult result = chunker::render(prepared, frame, parts, pipeline.settings.view.display_px,
+                                                 placement, pipeline.settings.render, inputs);
+  result.counters += mirrored.picture.counters;
+  return result;
+}
+
+}  // namespace
+
+std::vector<ShadowMapKey> shadow_map_keys(const Pipeline& pipeline, const SceneFrame& frame) {
+  std::vector<ShadowMapKey> keys;
+  if (!any_shadows(pipeline)) return keys;
+  keys.resize(pipeline.scene.lights.size());
+  const std::vector<layers::dmat4> casters = layers::part_matrices(frame, pipeline.layers.casting_parts);
+  for (std::size_t i = 0; i < keys.size(); ++i)
+    if (pipeline.scene.lights[i].casts_shadow) keys[i] = {frame.lights[i], casters};
+  return keys;
+}
+
+std::vector<int> shadow_lights(const Pipeline& pipeline, const Layer& layer) {
+  std::vector<int> lights;
+  const bool looks_up = layer.holds.shadows || (layer.holds.reflection && any_shadows(pipeline));
+  for (std::size_t i = 0; looks_up && i < pipeline.scene.lights.size(); ++i)
+    if (pipeline.scene.lights[i].casts_shadow && (layer.light < 0 || layer.light == static_cast<int>(i)))
+      lights.push_back(static_cast<int>(i));
+  return lights;
+}
+
+ShadeCounters& ShadeCounters::operator+=(const ShadeCounters& o) {
+  shadow_maps_drawn += o.shadow_maps_drawn;
+  shadow_maps_reused += o.shadow_maps_reused;
+  reflections_drawn += o.reflections_drawn;
+  shadow_polygons += o.shadow_polygons;
+  return *this;
+}
+
+void ShadePlan::add_render(const Pipeline& pipeline, const Layer& layer,
+                           const std::vector<ShadowMapKey>& keys, ShadeCounters& counters) {
+  counters.reflections_drawn += layer.holds.reflection;
+  for (const int light : shadow_lights(pipeline, layer)) {
+    drawn_.resize(keys.size());
+    if (!drawn_[light].world_from_casters.empty() && drawn_[light] == keys[light]) {
+      ++counters.shadow_maps_reused;
+      continue;
+    }
+    ++counters.shadow_maps_drawn;
+    counters.shadow_polygons += casting_polygons(pipeline);
+    drawn_[light] = keys[light];
+  }
+}
+
+const chunker::ShadowMap* ShadowMapStore::find(const Pipeline& pipeline, const SceneFrame& frame, int light,
+                                               const ShadowMapKey& key) {
+  maps_.resize(pipeline.scene.lights.size());
+  Entry& entry = maps_[light];
+  if (!entry.drawn || !(entry.key == key)) {
+    entry.map = chunker::make_shadow_map(frame, light, pipeline.layers.casting_parts);
+    entry.key = key;
+    entry.drawn = true;
+  }
+  return &entry.map;
+}
+
+std::int64_t ShadowMapStore::bytes() const {
+  std::int64_t sum = 0;
+  for (const Entry& entry : maps_) sum += entry.map.bytes();
+  return sum;
+}
+
+chunker::RenderResult draw_layer(const Pipeline& pipeline, ShadowMapStore& maps,
+                                 const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                                 const Layer& layer, const SpritePlacement& placement) {
+  return draw_term(pipeline, maps, prepared, frame, layer.parts, layer, term_of(layer), placement);
+}
+
+chunker::RenderResult draw_all_in_one_pass(const Pipeline& pipeline, ShadowMapStore& maps,
+                                           const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                                           const SpritePlacement& placement) {
+  Layer whole;  // holds what any layer holds
+  for (const Layer& layer : pipeline.layers.layers) {
+    if (layer.is_aggregate()) continue;
+    if (layer.base < 0) whole.parts.insert(whole.parts.end(), layer.parts.begin(), layer.parts.end());
+    whole.holds.shadows = whole.holds.shadows || layer.holds.shadows;
+    if (!layer.holds.reflection || whole.holds.reflection) continue;
+    whole.holds.reflection = true;
+    whole.plane = layer.plane;
+    whole.reflected = layer.reflected;
+  }
+  return draw_term(pipeline, maps, prepared, frame, whole.parts, whole, ShadeTerm::Full, placement);
+}
+
+SpriteMultipliers multipliers_at(const Layer& layer, double time_s) {
+  SpriteMultipliers m;
+  if (!layer.fade.values.empty()) m.alpha = static_cast<float>(layers::value_at(layer.fade, time_s));
+  if (!layer.gain.values.empty())
+    m.color = layers::vec3(static_cast<float>(layers::value_at(layer.gain, time_s)));
+  m.alpha = std::clamp(m.alpha, 0.0f, 1.0f);
+  m.color = glm::clamp(m.color, 0.0f, 1.0f);
+  return m;
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,255 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which shade layers a scene calls for, what their states depend on, and the effects of exact small scenes.
+#include "layers/shading.h"
+
+#include <cmath>
+#include <map>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "layers/effects.h"
+#include "layers/polyhedron.h"
+#include "layers/shade_state.h"
+#include "tests/support/room.h"
+
+namespace talisman::layers {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+using tests::Room;
+
+std::vector<std::string> names(const LayerSet& set) {
+  std::vector<std::string> names;
+  for (const Layer& layer : set.layers) names.push_back(layer.name);
+  return names;
+}
+
+// --- Which layers ---
+
+TEST(ShadeLayers, SceneThatCallsForNothingHasNone) {
+  const LayerSet set = Room().factored().layers();
+  EXPECT_THAT(names(set), ElementsAre("floor", "ball"));
+  EXPECT_EQ(set.layers[0].holds, HeldTerms{});
+  EXPECT_THAT(set.casting_parts, IsEmpty());
+}
+
+TEST(ShadeLayers, EachTermFollowsItsBaseInTheOrderOfTheCompositor) {
+  const LayerSet set = Room().casting().mirroring().shining().textured_twice().factored().layers();
+  EXPECT_EQ(set.defect, "");
+  EXPECT_THAT(names(set), ElementsAre("floor", "floor/texture 2", "floor/shadow of lamp", "floor/specular",
+                                      "floor/reflection", "ball"));
+  for (int id = 0; id < 6; ++id) EXPECT_EQ(set.layers[id].id, id);
+  for (int id = 1; id < 5; ++id) EXPECT_EQ(set.layers[id].base, 0);
+  EXPECT_THAT(set.layers[2].casters, ElementsAre(5));  // the ball, by its new number; not the flat floor
+  EXPECT_THAT(set.layers[4].reflected, ElementsAre(5));
+  EXPECT_EQ(set.layers[0].holds, HeldTerms{});
+  EXPECT_EQ(set.layers[2].light, 0);
+}
+
+TEST(ShadeLayers, UnfactoredTermsStayInTheSprite) {
+  const LayerSet set = Room().casting().mirroring().shining().layers();
+  EXPECT_THAT(names(set), ElementsAre("floor", "ball"));
+  EXPECT_TRUE(set.layers[0].holds.shadows);
+  EXPECT_TRUE(set.layers[0].holds.reflection);
+  EXPECT_TRUE(set.layers[0].holds.specular);
+  EXPECT_TRUE(set.layers[1].holds.shadows);  // a ball shadows itself
+}
+
+TEST(ShadeLayers, FactoredHighlightsTakeTheOtherTermsWithThem) {
+  // No term of the renderer holds shadows without highlights: alone in the list, `specular` pulls both out.
+  Room room = Room().casting().mirroring().shining();
+  room.specs[0].shading.specular = LayerPreferences{};
+  EXPECT_THAT(names(room.layers()),
+              ElementsAre("floor", "floor/shadow of lamp", "floor/specular", "floor/reflection", "ball"));
+}
+
+TEST(ShadeLayers, LayerWithoutReceiverOrCasterMakesNoShadow) {
+  Room unlit = Room().casting().factored();
+  for (Material& material : unlit.scene.materials) material.unlit = true;
+  EXPECT_THAT(names(unlit.layers()), ElementsAre("floor", "ball"));
+  Room glass = Room().casting().factored();  // a depth map knows no half-transparent caster
+  glass.scene.materials[1].opacity = 0.5f;
+  EXPECT_THAT(names(glass.layers()), ElementsAre("floor", "ball"));
+  Room excused = Room().casting().factored();
+  excused.specs[1].casts_shadows = false;
+  EXPECT_THAT(names(excused.layers()), ElementsAre("floor", "ball"));
+}
+
+TEST(ShadeLayers, CurvedMirrorIsRefusedWithItsReason) {
+  Room room;
+  room.scene.materials[1].reflectivity = 0.5f;
+  room.specs[1].shading.reflection = LayerPreferences{};
+  const LayerSet set = room.layers();
+  EXPECT_THAT(names(set), ElementsAre("floor", "ball"));
+  EXPECT_THAT(reflection_defect(room.scene, set.layers[1]), HasSubstr("not flat"));
+}
+
+TEST(ShadeLayers, ReflectionCountsWhatItDrawsAgain) {
+  const LayerSet set = Room().mirroring().factored().layers();
+  EXPECT_EQ(set.layers[1].polygons, set.layers[0].polygons + set.layers[2].polygons);
+}
+
+TEST(ShadeLayers, PreferenceOfATermOutOfRangeIsADefect) {
+  Room room = Room().casting().factored();
+  room.specs[0].shading.shadows->resolution_scale = 5;
+  EXPECT_THAT(room.layers().defect, HasSubstr("resolution_scale"));
+}
+
+TEST(CommonPlane, FloorFacesUp) {
+  const Room room;
+  const auto plane = common_plane(room.scene, std::vector<int>{0}, 0);
+  ASSERT_TRUE(plane.has_value());
+  EXPECT_NEAR(plane->normal.z, 1, 1e-12);  // the square's own space: it faces its +z
+}
+
+TEST(CommonPlane, NothingWithoutAreaOrNode) {
+  Room room;
+  EXPECT_FALSE(common_plane(room.scene, std::vector<int>{1}, 1));  // a ball
+  EXPECT_FALSE(common_plane(room.scene, std::vector<int>{0}, -1));
+  EXPECT_FALSE(common_plane(room.scene, std::vector<int>{}, 0));
+  room.scene.meshes[0].positions.assign(room.scene.meshes[0].positions.size(), vec3(1));  // all in one point
+  EXPECT_FALSE(common_plane(room.scene, std::vector<int>{0}, 0));
+}
+
+TEST(WithShadeLayers, FollowTheirBasesWhateverTheGivenOrder) {
+  const LayerSet set = Room().casting().shining().factored().layers();  // floor, shadow, specular, ball
+  ASSERT_EQ(set.layers.size(), 4u);
+  EXPECT_THAT(with_shade_layers(set.layers, std::vector<int>{2, 3, 0, 1}), ElementsAre(3, 0, 1, 2));
+}
+
+// --- Effects ---
+
+std::map<std::string, std::string> called(const Room& room) {
+  std::map<std::string, std::string> called;
+  const LayerSet set = room.layers();
+  for (const EffectCall& call : effects_called_for(room.scene, set.layers))
+    if (call.called) called.emplace(name(call.effect), call.why);
+  return called;
+}
+
+std::string why(const Room& room, Effect effect) {
+  const LayerSet set = room.layers();
+  for (const EffectCall& call : effects_called_for(room.scene, set.layers))
+    if (call.effect == effect) return call.why;
+  return "?";
+}
+
+TEST(EffectsCalledFor, BareLitSceneCallsForLightingAlone) {
+  EXPECT_THAT(called(Room()), ElementsAre(testing::Pair("lighting", HasSubstr("is lit"))));
+}
+
+TEST(EffectsCalledFor, EveryShadeEffectSaysWhyNot) {
+  const Room room;
+  EXPECT_EQ(why(room, Effect::ShadowMap), "no light casts shadows");
+  EXPECT_EQ(why(room, Effect::ShadowLayer), "no light casts shadows");
+  EXPECT_EQ(why(room, Effect::SpecularLayer), "no lit material has specular > 0");
+  EXPECT_EQ(why(room, Effect::ReflectionMap), "no material has reflectivity > 0");
+  EXPECT_EQ(why(room, Effect::TextureLayers), "no material has a second texture");
+  EXPECT_THAT(why(Room().casting(), Effect::ShadowLayer), HasSubstr("no layer factors"));
+}
+
+TEST(EffectsCalledFor, EveryShadeEffectOfAFactoredRoom) {
+  const auto table = called(Room().casting().mirroring().shining().textured_twice().factored());
+  std::vector<std::string> effects;
+  for (const auto& [effect, reason] : table) effects.push_back(effect);
+  EXPECT_THAT(effects,
+              ElementsAre("lighting", "mip_filter", "reflection_layer", "reflection_map", "shadow_layer",
+                          "shadow_map", "specular_highlight", "specular_layer", "texture", "texture_layers"));
+}
+
+TEST(EffectsCalledFor, ShadowMapAtRestIsDrawnOnce) {
+  EXPECT_EQ(why(Room().casting(), Effect::ShadowMap), "light 'lamp': static, drawn once");
+  EXPECT_THAT(why(Room().casting().spinning(1), Effect::ShadowMap), HasSubstr("drawn again"));  // the caster
+  EXPECT_THAT(why(Room().casting().spinning(3), Effect::ShadowMap), HasSubstr("drawn again"));  // the light
+}
+
+// --- States ---
+
+/// The states of all layers of a room, with any node moved by hand.
+std::vector<LayerState> states_of(const Room& room, int moved_node = -1, const dvec3& by = dvec3(0)) {
+  const LayerSet set = room.layers();
+  SceneFrame frame = room.scene.at(0);
+  if (moved_node >= 0) {
+    frame.world_from_node[moved_node][3] += dvec4(by, 0);
+    if (moved_node == 2) frame.camera.world_from_camera[3] += dvec4(by, 0);
+    if (moved_node == 3) frame.lights[0].position += by;
+  }
+  std::vector<LayerState> states;
+  for (const Layer& layer : set.layers)
+    states.push_back(layer.base >= 0 ? shade_state(states[layer.base], layer)
+                                     : capture(frame, layer,
+                                               make_layer_bound(room.scene, layer, BoundKind::Box8), View{}));
+  capture_influences(frame, set, states);
+  return states;
+}
+
+Room full_room() { return Room().casting().mirroring().shining().factored(); }
+enum FullRoomLayer { kFloor, kShadow, kSpecular, kReflection, kBall };
+
+TEST(ShadeState, MovingCasterChangesTheShadesAndNotTheirBase) {
+  const auto then = states_of(full_room()), now = states_of(full_room(), 1, {0.2, 0, 0});
+  EXPECT_TRUE(now[kFloor].same_pixels(then[kFloor]));
+  EXPECT_FALSE(now[kShadow].same_pixels(then[kShadow]));
+  EXPECT_FALSE(now[kReflection].same_pixels(then[kReflection]));
+  EXPECT_FALSE(now[kSpecular].same_pixels(then[kSpecular]));  // dimmed by the shadow
+}
+
+TEST(ShadeState, AtRestAllPixelsAreTheSame) {
+  const auto then = states_of(full_room()), now = states_of(full_room());
+  for (std::size_t i = 0; i < then.size(); ++i) EXPECT_TRUE(now[i].same_pixels(then[i])) << i;
+}
+
+TEST(ShadeState, ShadowOfAPointIsWhereTheRayMeetsTheFloor) {
+  const auto states = states_of(full_room());
+  const LayerState& shadow = states[kShadow];
+  ASSERT_EQ(shadow.traces.size(), 1u);
+  EXPECT_TRUE(shadow.traces[0].on_receiver);
+  ASSERT_EQ(shadow.traces[0].places.size(), states[kBall].world_points.size());
+  const dvec3 lamp(1, 4, 1);
+  for (std::size_t i = 0; i < shadow.traces[0].places.size(); ++i) {
+    const dvec3 place = dvec3(shadow.world_from_receiver * dvec4(shadow.traces[0].places[i], 1));
+    EXPECT_NEAR(place.y, 0, 1e-9);
+    const dvec3 c = states[kBall].world_points[i];  // on one line with the lamp
+    EXPECT_LT(glm::length(glm::cross(place - lamp, c - lamp)), 1e-9);
+  }
+}
+
+TEST(ShadeState, HighlightAndReflectionObeyTheLawOfReflection) {
+  const auto states = states_of(full_room());
+  const dvec3 lamp(1, 4, 1), eye(0, 2, 6);
+  const LayerState& specular = states[kSpecular];
+  ASSERT_FALSE(specular.traces.empty());
+  const ShadeTrace& highlight = specular.traces.back();
+  ASSERT_EQ(highlight.kind, ShadeTrace::Kind::Highlight);
+  const dvec3 place = dvec3(specular.world_from_receiver * dvec4(highlight.places[0], 1));
+  const dvec3 in = glm::normalize(place - lamp), out = glm::normalize(eye - place);
+  EXPECT_LT(glm::length(out - dvec3(in.x, -in.y, in.z)), 1e-9);  // the floor turns y around
+}
+
+TEST(ShadeState, LightBelowTheFloorOrInTheBallIsFinite) {
+  // Below the floor rays meet it from behind; in the middle of the caster they leave in all directions.
+  for (const dvec3& by : {dvec3(0, -6, 0), dvec3(-1, -3, -1), dvec3(-1, -4, -1)}) {
+    const auto states = states_of(full_room(), 3, by);
+    for (const LayerState& state : states)
+      for (const ShadeTrace& trace : state.traces) {
+        bool some_finite = false;
+        for (const dvec3& place : trace.places) some_finite = some_finite || std::isfinite(place.x);
+        if (trace.on_receiver && trace.kind == ShadeTrace::Kind::Shadow) {
+          EXPECT_TRUE(some_finite);
+        }
+      }
+    EXPECT_EQ(states[kShadow].traces.size(), 1u);
+  }
+}
+
+TEST(ShadeState, ShadowThatFallsBesideTheReceiverIsNotOnIt) {
+  const auto states = states_of(full_room(), 1, {60, 0, 0});  // the ball far away from the floor
+  EXPECT_FALSE(states[kShadow].traces[0].on_receiver);
+}
+
+}  // namespace
+}  // namespace talisman::layers
