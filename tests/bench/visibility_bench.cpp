@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What does the visibility order of n moving layers cost per frame? Boxes of random shape in a cube that
-// grows with their number, so that each overlaps some ten others in view whatever n is; each drifts and
+// grows with their number, so that each overlaps some ten others in view (two for n = 100); each drifts and
 // turns. The second argument is the motion per frame in 1/1000 of a body's size; the eye moves as fast as the
 // bodies.
 //
