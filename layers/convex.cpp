@@ -13,8 +13,8 @@ namespace {
 
 constexpr int kMaxApart = 48;    ///< supports while the sets seem to be apart; GJK needs some 5
 constexpr int kMaxExpand = 60;   ///< supports of the expanding polytope
-constexpr int kExtraSteps = 6;   ///< supports spent on better bounds after the decision
-constexpr double kEnough = 0.5;  ///< bounds within this ratio of each other are good enough
+constexpr int kExtraSteps = 10;  ///< supports spent on better bounds after the decision
+constexpr double kEnough = 0.8;  ///< bounds within this ratio of each other are good enough
 constexpr double kRounding = 1e-14;
 
 bool contains(const ConvexSet& s) { return s.apex || !s.points.empty(); }

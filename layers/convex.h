@@ -40,7 +40,7 @@ struct DepthDecision {
   int iterations = 0;
 };
 
-/// Is depth(A, C) > tolerance (≥ 0)? Goes on after the decision until the bounds are within a factor of two
+/// Is depth(A, C) > tolerance (≥ 0)? Goes on after the decision until the bounds are within a fifth
 /// of each other or some steps are spent, since a bound that is better lasts for more frames. `guess` is a
 /// direction to try first (0: from A's middle to C's). An empty set is not deeper than anything. Cost: 4 … 40
 /// supports of O(points) each, typically 5.

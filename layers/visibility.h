@@ -98,7 +98,7 @@ struct VisibilityCounters {
   int undecided = 0;    ///< exact tests that rounding left open; they count as occlusion
   int edges = 0;        ///< pairs of bodies, in either direction, of which one can occlude the other
   int sorted = 0;       ///< layers in the stretches of last frame's order that no longer hold
-  int swaps = 0;        ///< layers that are not where they were among the layers of last frame
+  int swaps = 0;        ///< layers that the sort moved within last frame's line (with the new layers put in)
   int components = 0;   ///< single layers and merged components together
   int merged_components = 0, merged_layers = 0;
   int overruled_pairs = 0;  ///< explicit pairs within a merged component, where the z-buffer decides
