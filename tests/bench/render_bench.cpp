@@ -7,6 +7,7 @@
 #include <tbb/global_control.h>
 
 #include "chunker/render.h"
+#include "chunker/shadow_map.h"
 #include "tests/support/scenes.h"
 
 namespace {
@@ -28,8 +29,8 @@ layers::Scene workload(int triangles) {
   return scene;
 }
 
-void render_scene(benchmark::State& state, const layers::Scene& scene, chunker::Shading shading,
-                  std::int64_t thread_count) {
+void render_scene(benchmark::State& state, const layers::Scene& scene, const chunker::RenderOptions& options,
+                  std::int64_t thread_count, const chunker::ShadeInputs& inputs = {}) {
   const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, thread_count);
   const chunker::PreparedScene prepared(scene);
   const layers::SceneFrame frame = scene.at(0);
@@ -37,11 +38,9 @@ void render_scene(benchmark::State& state, const layers::Scene& scene, chunker::
   std::iota(parts.begin(), parts.end(), 0);
   layers::SpritePlacement placement;
   placement.size_px = {1024, 1024};
-  chunker::RenderOptions options;
-  options.shading = shading;
   chunker::RenderResult result;
   for (auto _ : state) {
-    result = chunker::render(prepared, frame, parts, placement.size_px, placement, options);
+    result = chunker::render(prepared, frame, parts, placement.size_px, placement, options, inputs);
     benchmark::DoNotOptimize(result);
   }
   const double runs = static_cast<double>(state.iterations());
@@ -56,20 +55,74 @@ void render_scene(benchmark::State& state, const layers::Scene& scene, chunker::
   state.counters["subdivided"] = static_cast<double>(result.counters.chunk_subdivisions);
 }
 
+chunker::RenderOptions shaded(chunker::Shading shading) {
+  chunker::RenderOptions options;
+  options.shading = shading;
+  return options;
+}
+
 void RenderGouraud(benchmark::State& state) {
-  render_scene(state, workload(static_cast<int>(state.range(0))), chunker::Shading::Gouraud, state.range(1));
+  render_scene(state, workload(static_cast<int>(state.range(0))), shaded(chunker::Shading::Gouraud),
+               state.range(1));
 }
 void RenderPhong(benchmark::State& state) {
-  render_scene(state, workload(static_cast<int>(state.range(0))), chunker::Shading::Phong, state.range(1));
+  render_scene(state, workload(static_cast<int>(state.range(0))), shaded(chunker::Shading::Phong),
+               state.range(1));
 }
 
 /// Nothing but filling: one textured, lit square over the whole display.
 void FillDisplay(benchmark::State& state) {
   layers::Scene scene = tests::textured_quad_scene();
   for (layers::vec3& p : scene.meshes[scene.parts[0].mesh].positions) p *= 4.0f;
-  render_scene(state, scene, chunker::Shading::Gouraud, state.range(0));
+  render_scene(state, scene, shaded(chunker::Shading::Gouraud), state.range(0));
 }
 
+/// What fewer samples of coverage save.
+void RenderSamples(benchmark::State& state) {
+  chunker::RenderOptions options;
+  options.samples = static_cast<int>(state.range(0));
+  render_scene(state, workload(70000), options, 1);
+}
+
+/// What samples along the line of anisotropy cost.
+void RenderAnisotropic(benchmark::State& state) {
+  chunker::RenderOptions options;
+  options.max_anisotropy = static_cast<int>(state.range(0));
+  render_scene(state, workload(5000), options, 1);
+}
+
+/// What a shadow costs: the ball shadows itself; filter radius 0, 1, 3.
+void RenderShadowed(benchmark::State& state) {
+  const layers::Scene scene = workload(70000);
+  layers::ShadowMapOptions shadow;
+  shadow.pcf_radius = static_cast<int>(state.range(0));
+  std::vector<chunker::ShadowMap> maps(scene.lights.size());
+  std::vector<const chunker::ShadowMap*> pointers;
+  const std::vector<int> casters{0};
+  for (int i = 0; i < static_cast<int>(maps.size()); ++i)
+    maps[i] = chunker::make_shadow_map(scene.at(0), i, casters, shadow);
+  for (const chunker::ShadowMap& map : maps) pointers.push_back(&map);
+  chunker::ShadeInputs inputs;
+  inputs.shadow_maps = pointers;
+  render_scene(state, scene, {}, 1, inputs);
+}
+
+/// The map itself, by resolution.
+void DrawShadowMap(benchmark::State& state) {
+  const layers::Scene scene = workload(70000);
+  const layers::SceneFrame frame = scene.at(0);
+  layers::ShadowMapOptions shadow;
+  shadow.resolution_px = static_cast<int>(state.range(0));
+  const std::vector<int> casters{0};
+  for (auto _ : state)
+    for (int i = 0; i < static_cast<int>(scene.lights.size()); ++i)
+      benchmark::DoNotOptimize(chunker::make_shadow_map(frame, i, casters, shadow));
+}
+
+BENCHMARK(RenderSamples)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RenderAnisotropic)->Arg(1)->Arg(2)->Arg(8)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RenderShadowed)->Arg(0)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(DrawShadowMap)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(FillDisplay)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(RenderGouraud)
     ->ArgsProduct({{5000, 70000, 500000}, {1, 2}})

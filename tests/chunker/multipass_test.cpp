@@ -206,11 +206,11 @@ TEST(MirroredFrame, PlaneThroughTheEye) {
 TEST(Reflection, AddsWhatTheMirrorShows) {
   Stage stage;
   stage.scene.parts.resize(2);
-  const LinearImage with = stage.linear(stage.inputs()),
-                    term = stage.linear(stage.inputs(ShadeTerm::Reflection));
+  const LinearImage with = stage.linear(stage.inputs(), exact_options()),
+                    term = stage.linear(stage.inputs(ShadeTerm::Reflection), exact_options());
   ShadeInputs without = stage.inputs();
   without.reflection = nullptr;
-  const LinearImage plain = stage.linear(without);
+  const LinearImage plain = stage.linear(without, exact_options());
   float most = 0;
   for (std::size_t i = 0; i < with.texels.size(); ++i) {
     EXPECT_NEAR(with.texels[i].r, plain.texels[i].r + term.texels[i].r, 1e-6f);

@@ -99,7 +99,8 @@ class Stage {
  private:
   void prepare() {
     const layers::SceneFrame frame = scene.at(0);
-    const std::vector<int> casters{kCube, kBall};
+    std::vector<int> casters = all_parts(scene);
+    casters.erase(casters.begin());  // all but the floor
     maps_.resize(scene.lights.size());
     for (int i = 1; i < static_cast<int>(scene.lights.size()); ++i)
       maps_[i] = make_shadow_map(frame, i, casters);
