@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // What does the visibility order of n moving layers cost per frame? Boxes of random shape in a cube that
-// grows with their number, so that each overlaps some ten others in view whatever n is; each drifts and turns.
-// The second argument is the motion per frame in 1/1000 of a body's size; the eye moves as fast as the bodies.
+// grows with their number, so that each overlaps some ten others in view whatever n is; each drifts and
+// turns. The second argument is the motion per frame in 1/1000 of a body's size; the eye moves as fast as the
+// bodies.
 //
 //   incremental   one frame after the other, as the pipeline does
 //   scratch       a new sorter for every frame: no coherence, but the tree
 //   brute_force   all pairs tested on the hulls, sorted from scratch; small n only
 //
-// Counters are per frame: pairs that overlap in view, bodies looked up in the tree, exact tests, layers sorted.
+// Counters are per frame: pairs that overlap in view, bodies looked up in the tree, exact tests, layers
+// sorted.
 #include <cmath>
 #include <vector>
 

@@ -21,7 +21,8 @@ using Points = std::vector<dvec3>;
 
 inline Points box(const dvec3& centre, const dvec3& half) {
   Points p;
-  for (int k = 0; k < 8; ++k) p.push_back(centre + half * dvec3{k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1});
+  for (int k = 0; k < 8; ++k)
+    p.push_back(centre + half * dvec3{k & 1 ? 1 : -1, k & 2 ? 1 : -1, k & 4 ? 1 : -1});
   return p;
 }
 
@@ -168,7 +169,10 @@ class MovingBodies {
     for (int i = 0; i < count; ++i) {
       Body b;
       const dvec3 stretch = glm::abs(dice.in_cube(1)) + 0.1;
-      const int kind = dice.below(12), points = kind == 0 ? 1 : kind == 1 ? 2 : kind == 2 ? 4 : 4 + dice.below(3);
+      const int kind = dice.below(12), points = kind == 0   ? 1
+                                                : kind == 1 ? 2
+                                                : kind == 2 ? 4
+                                                            : 4 + dice.below(3);
       for (int k = 0; k < points; ++k) b.shape.push_back(dice.in_cube(1) * stretch);
       if (kind == 2)
         for (dvec3& p : b.shape) p.z = 0;

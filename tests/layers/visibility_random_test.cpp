@@ -34,19 +34,19 @@ void expect_valid_frames(unsigned seed, const MovingBodies& bodies, int frames, 
 TEST(VisibilityRandom, TenThousandScenesAgreeWithBruteForce) {
   int checked = 0, cyclic = 0;
   for (unsigned seed = 1; seed <= 10000 && !testing::Test::HasFatalFailure(); ++seed)
-    expect_valid_frames(seed, MovingBodies(seed, 2 + static_cast<int>(seed % 4), 0.7 + 0.4 * (seed % 3), 0.2), 3, checked,
-                        cyclic);
-  EXPECT_GT(checked, 29000) << "pairs that rounding decides are rare";
-  EXPECT_GT(cyclic, 5000) << "the scenes hold both cyclic";
-  EXPECT_LT(cyclic, 25000) << "and orderly worlds";
+    expect_valid_frames(seed, MovingBodies(seed, 2 + static_cast<int>(seed % 4), 0.7 + 0.4 * (seed % 3), 0.2),
+                        2, checked, cyclic);
+  EXPECT_GT(checked, 19000) << "pairs that rounding decides are rare";
+  EXPECT_GT(cyclic, 3000) << "the scenes hold both cyclic";
+  EXPECT_LT(cyclic, 15000) << "and orderly worlds";
 }
 
 // Slow motion, so that most answers are kept from the frame before: a term that is too long shows here.
 TEST(VisibilityRandom, KeptAnswersAreAsGoodAsNewOnes) {
   int checked = 0, cyclic = 0;
-  for (unsigned seed = 1; seed <= 40 && !testing::Test::HasFatalFailure(); ++seed)
+  for (unsigned seed = 1; seed <= 20 && !testing::Test::HasFatalFailure(); ++seed)
     expect_valid_frames(seed, MovingBodies(seed, 7, 2.5, seed % 2 ? 0.004 : 0.03), 120, checked, cyclic);
-  EXPECT_GT(checked, 3900) << "worlds with points on needles are left out";
+  EXPECT_GT(checked, 1900) << "worlds with points on needles are left out";
   EXPECT_GT(cyclic, 0);
 }
 
@@ -59,7 +59,8 @@ TEST(DecideDepth, AgreesWithAllFacetPlanes) {
     for (const double tolerance : {1e-12, 0.01, 0.2}) {
       if (std::fabs(depth - tolerance) < 1e-9) continue;
       const DepthDecision d = decide_depth({a}, {c}, tolerance);
-      ASSERT_EQ(d.deeper, depth > tolerance) << "bodies " << k << " depth " << depth << " against " << tolerance;
+      ASSERT_EQ(d.deeper, depth > tolerance)
+          << "bodies " << k << " depth " << depth << " against " << tolerance;
       ASSERT_TRUE(d.decided) << k;
       ASSERT_LE(d.lower, d.upper + 1e-12);
       if (depth > 0) {
