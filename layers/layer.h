@@ -63,8 +63,8 @@ struct SurfacePlane {
   dvec3 normal{0, 1, 0};
 };
 
-/// The author's order. Groups are drawn in the order of these values; inside a group layers are sorted by
-/// depth.
+/// The author's order. Groups are drawn in the order of these values; inside a group layers are sorted by who
+/// can hide whom (layers/visibility.h).
 enum class OrderGroup { Background = -1, Normal = 0, Foreground = 1 };
 
 /// What an author writes: a name and the globs ('*' any run, '?' one character) of the parts.
@@ -142,30 +142,11 @@ LayerSet factor(const Scene& scene, std::span<const LayerSpec> specs);
 /// part over.
 std::vector<LayerSpec> default_layer_specs(const Scene& scene);
 
-/// One triangle soup box per layer for sorting: world-space axis-aligned bounds at one time.
+/// World-space axis-aligned bounds at one time.
 struct WorldBounds {
   dvec3 lo{HUGE_VAL, HUGE_VAL, HUGE_VAL};
   dvec3 hi{-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
   bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
 };
-
-/// Layer ids from back to front: groups in order; inside a group by who can occlude whom, as seen from the
-/// eye:
-/// - boxes that do not overlap in the view: no relation (exact: a plane through the eye along some box edge
-///   parts them);
-/// - boxes with an axis plane between them: the one on the eye's side can occlude the other, never the
-/// reverse
-///   (certain);
-/// - boxes that overlap by less than half of the thinner one along some axis: as if they touched in the
-/// middle
-///   of the overlap (likely);
-/// - boxes that overlap more: farthest point first, then nearest point, then id (likely). Not the nearest
-/// point
-///   first: a terrain or a room, whose box contains the eye or what stands in it, would hide all of it.
-///
-/// A cycle is sorted again by what is certain; what then still is cyclic, by distance as above. Layers with
-/// empty bounds come first in their group. Deterministic. Cost: O(n²) pair tests of some 20 ns, O(n) memory.
-std::vector<int> back_to_front(const dvec3& eye, std::span<const Layer> layers,
-                               std::span<const WorldBounds> bounds);
 
 }  // namespace talisman::layers

@@ -207,7 +207,7 @@ TEST(Aggregates, CyclesThatAreKeptAreNeverMerged) {
 }
 
 TEST(Aggregates, AuthorsOrderReplacesGeometry) {
-  const Sequence s = crossing("order: [{behind: ball, front: wal?}]\n");
+  const Sequence s = crossing("order: [{behind: ball, front: 'wal?'}]\n");
   Playback run(s, settings_of(s));
   for (const FrameReport& report : run.all(12)) {
     EXPECT_TRUE(report.order.mergers.empty());

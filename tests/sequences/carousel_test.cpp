@@ -51,6 +51,16 @@ int front_layer(const FrameReport& report, const chunker::SpriteStore& sprites, 
   return -1;
 }
 
+/// Back to front, the layers that cover the pixel.
+std::string layers_at(const Pipeline& authored, const FrameReport& report, const PipelineState& state, int x,
+                      int y) {
+  std::string text;
+  for (const ShownSprite& shown : report.shown)
+    if (alpha_at(shown, state.sprites, x, y) > 0)
+      text += with_aggregates(authored, state).layers.layers[shown.layer].name + ", ";
+  return text;
+}
+
 int difference(const Image8& a, const Image8& b, std::size_t pixel) {
   int largest = 0;
   for (std::size_t c = 0; c < 3; ++c)
@@ -81,6 +91,9 @@ TEST(Carousel, LayersEqualOnePassExceptWherePixelsAreCoveredInPart) {
           ++in_full;
           off_by_one += d == 1;
           wrong += d > 1;
+          if (d > 1)
+            std::printf("  frame %d, pixel %d, %d: %s\n", frame, x, y,
+                        layers_at(pipeline, report, state, x, y).c_str());
         }
       }
   }

@@ -70,7 +70,8 @@ class Tool : public ::testing::Test {
   }
 
   /// Starts the tool and sends it a signal as soon as `file` is there.
-  Outcome run_and_signal(const std::string& arguments, const std::string& file, const std::string& signal) const {
+  Outcome run_and_signal(const std::string& arguments, const std::string& file,
+                         const std::string& signal) const {
     write("start.sh", "'" + tool() + "' " + arguments + " & pid=$!\nwhile [ ! -e '" + file +
                           "' ] && kill -0 $pid; do sleep 0.01; done\nkill -" + signal + " $pid\nwait $pid\n");
     return run_shell("bash start.sh");
@@ -139,7 +140,8 @@ TEST_F(Tool, FramesOfARangeAreThoseOfTheFullRun) {
 TEST_F(Tool, FramesOfARangeUnderLookaheadAreThoseOfTheFullRun) {
   // The runs end with the sequence, not with the range that was asked for.
   for (const std::string policy : {"lookahead --lookahead 6", "oracle"}) {
-    const std::string options = "render cube.obj --size 64x48 --geometric-px 1 --progress none --policy " + policy;
+    const std::string options =
+        "render cube.obj --size 64x48 --geometric-px 1 --progress none --policy " + policy;
     ASSERT_EQ(run(options + " --out all --frames 0-24").exit_code, 0);
     ASSERT_EQ(run(options + " --out part --frames 13-15").exit_code, 0);
     for (const char* frame : {"0013.png", "0014.png", "0015.png"})
@@ -166,8 +168,8 @@ TEST_F(Tool, KilledRunContinuesWithTheSameBytes) {
 }
 
 TEST_F(Tool, InterruptedRunSaysSoAndExitsWithThree) {
-  const Outcome outcome = run_and_signal("render cube.obj --frames 0-59 --size 640x480 --progress none --out o",
-                                         "o/frames/0002.png", "INT");
+  const Outcome outcome = run_and_signal(
+      "render cube.obj --frames 0-59 --size 640x480 --progress none --out o", "o/frames/0002.png", "INT");
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("--resume"));
   EXPECT_FALSE(fs::exists(folder_ / "o/summary.json"));
@@ -271,6 +273,19 @@ TEST_F(Tool, DiffOfEqualFoldersIsIdentical) {
   const Outcome outcome = run("diff a/frames b/frames");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("identical"));
+}
+
+TEST_F(Tool, InspectTellsTheOrderOverTime) {
+  const Outcome text = run("inspect cube.obj --order");
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_THAT(text.output, AllOf(HasSubstr("visibility order of 120 frames"), HasSubstr("    0-119")));
+  const Outcome json = run("inspect cube.obj --order --json");
+  EXPECT_EQ(json.exit_code, 0);
+  // One layer: there is nothing to sort, and nothing was.
+  EXPECT_EQ(nlohmann::json::parse(json.output)["frames_sorted"], 0);
+  const Outcome wrong = run("plan cube.obj --cycles split");
+  EXPECT_EQ(wrong.exit_code, 2);
+  EXPECT_THAT(wrong.output, HasSubstr("--cycles is 'split', must be one of merge, keep"));
 }
 
 }  // namespace
