@@ -432,12 +432,12 @@ std::vector<dvec3> point_normals(std::span<const dvec3> points, const Polyhedron
     normals[hull.triangles[triangle][1]] += areas[face];
     for (; triangle < hull.face_ends[face]; ++triangle) normals[hull.triangles[triangle][2]] += areas[face];
   }
+  for (dvec3& normal : normals) normal = unit_or_zero(normal);
+  if (std::any_of(normals.begin(), normals.end(), [](const dvec3& n) { return n != dvec3(0.0); }))
+    return normals;
   dvec3 middle(0.0);
   for (const dvec3& p : points) middle += p / static_cast<double>(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    normals[i] = unit_or_zero(normals[i]);
-    if (normals[i] == dvec3(0.0)) normals[i] = unit_or_zero(points[i] - middle);
-  }
+  for (std::size_t i = 0; i < points.size(); ++i) normals[i] = unit_or_zero(points[i] - middle);
   return normals;
 }
 

@@ -64,9 +64,9 @@ std::vector<dvec3> face_areas(std::span<const dvec3> world_points, const Polyhed
                               std::span<const dmat4> world_from_body);
 
 /// A normal for each characteristic point: the sum of the areas of the faces that meet in it, of unit length.
-/// The normals of a box thus point into all eight octants, and those of a flat one to its two sides. Where
-/// the faces have no area they point away from the middle of all points; zero where that is nowhere. Cost:
-/// O(triangles).
+/// The normals of a box thus point into all eight octants, and those of a flat one to its two sides. A point
+/// between faces without area has none (zero): it samples no side. Where no face has an area, lines and
+/// points, they point away from the middle. Cost: O(triangles).
 std::vector<dvec3> point_normals(std::span<const dvec3> world_points, const Polyhedron& hull,
                                  std::span<const dmat4> world_from_body);
 

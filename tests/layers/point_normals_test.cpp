@@ -69,15 +69,19 @@ TEST(PointNormals, OfEveryKindAreOfUnitLengthAndPointOutwards) {
   }
 }
 
+// The richer kinds have points between faces without area, at the plate's rim: they sample no side, and must
+// not make up a third one.
 TEST(PointNormals, OfAFlatLayerAreThoseOfItsTwoSides) {
   for (const BoundKind kind : kKinds) {
     const Polyhedron plate = bounding_polyhedron(box_corners({2, 3, 0}), kind);
-    int front = 0;
+    int front = 0, back = 0;
     for (const dvec3& n : point_normals(plate.points, plate, kOneBody)) {
-      EXPECT_EQ(std::fabs(n.z), 1);
+      EXPECT_TRUE(n == dvec3(0.0) || std::fabs(n.z) == 1);
       front += n.z > 0;
+      back += n.z < 0;
     }
-    EXPECT_EQ(2 * front, static_cast<int>(plate.points.size()));
+    EXPECT_EQ(front, back);
+    EXPECT_GE(front, 4);
   }
 }
 
