@@ -2,8 +2,11 @@
 #include "sequences/layer_planning.h"
 
 #include <algorithm>
+#include <cstdlib>
 
 #include "fiducials/fiducials.h"
+#include "layers/predict.h"
+#include "regulator/resolution.h"
 #include "warp/shade.h"
 
 namespace talisman::sequences {
@@ -12,17 +15,20 @@ namespace {
 
 using layers::Layer;
 using layers::LayerState;
+using layers::SceneFrame;
 using layers::SpritePlacement;
 using regulator::LayerAssessment;
+using regulator::Policy;
 
-/// Extents grow by velocity × `expected_reuse`; `soon` is the state one frame later.
+/// Extents grow by velocity × `expected_reuse`; `soon` is the state one frame later. `resolution` is relative
+/// to what the layer's author asks for.
 SpritePlacement place_layer(const Pipeline& pipeline, const LayerState& now, const LayerState& soon,
-                            double expected_reuse) {
+                            double expected_reuse, double resolution = 1) {
   const Layer& layer = pipeline.layers.layers[now.layer];
   layers::ExtentOptions extents = pipeline.settings.extents;
   extents.expected_reuse_frames = expected_reuse * layer.preferences.share_of_expected_motion;
   layers::PlacementOptions placement = pipeline.settings.placement;
-  placement.resolution_scale *= layer.preferences.resolution_scale;
+  placement.resolution_scale *= layer.preferences.resolution_scale * resolution;
   return layers::place_sprite(now, soon, pipeline.bounds[layer.id].hull, extents, placement);
 }
 
@@ -43,23 +49,75 @@ double expected_reuse_frames(const Pipeline& pipeline, const LayerMemory& memory
   const double by_policy = regulator::expected_reuse_frames(pipeline.settings.regulator,
                                                             pipeline.settings.extents.expected_reuse_frames);
   if (looks_ahead(pipeline) || !memory.then) return by_policy;
-  return std::min(by_policy, 2.0 * (frame - memory.frame_rendered));
+  return std::min(by_policy, 2.0 * std::abs(frame - memory.frame_rendered));
+}
+
+/// Where the layer's sprite lies if it is rendered at the instant of `frame`, at a regulated resolution.
+SpritePlacement place_regulated(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
+                                double resolution) {
+  const LayerState& now = states_at(pipeline, state, frame)[layer];
+  const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
+  if (!(expected_reuse > 0)) return place_layer(pipeline, now, now, 0, resolution);
+  return place_layer(pipeline, now, states_at(pipeline, state, frame + 1)[layer], expected_reuse, resolution);
+}
+
+/// Sampling is judged by the texels that the layer's author asks for, not by the coarser ones of a sprite
+/// whose resolution was lowered.
+void see_through_resolution(LayerAssessment& assessment, double resolution) {
+  assessment.resolution_then = resolution;
+  if (resolution == 1) return;
+  assessment.fiducials.sampling.magnification /= resolution;
+  assessment.fiducials.sampling.minification /= resolution;
 }
 
 }  // namespace
 
 bool looks_ahead(const Pipeline& pipeline) {
-  const regulator::Policy policy = pipeline.settings.regulator.policy;
-  return policy == regulator::Policy::Lookahead || policy == regulator::Policy::Oracle;
+  const Policy policy = pipeline.settings.regulator.policy;
+  return policy == Policy::Lookahead || policy == Policy::Oracle;
+}
+
+bool predicts(const Pipeline& pipeline) {
+  return pipeline.settings.regulator.policy == regulator::Policy::Lookahead &&
+         pipeline.settings.regulator.predict == regulator::Prediction::Linear;
 }
 
 double time_of(const Pipeline& pipeline, int frame) { return frame / pipeline.settings.fps; }
+
+SceneFrame scene_at(const Pipeline& pipeline, int frame) {
+  return pipeline.scene.at(time_of(pipeline, frame));
+}
+
+SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame) {
+  const SceneFrame now = scene_at(pipeline, known);
+  if (known == frame) return now;
+  return layers::predict_linear(known > 0 ? scene_at(pipeline, known - 1) : now, now, frame - known);
+}
+
+void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
+  const Policy policy = pipeline.settings.regulator.policy;
+  if (state.planned_with != pipeline.settings.regulator || predicts(pipeline)) state.captured.clear();
+  state.planned_with = pipeline.settings.regulator;
+  state.now = frame;
+  state.motion.reset();
+  if (predicts(pipeline)) {
+    SceneFrame now = scene_at(pipeline, frame);
+    state.motion = MotionKnown{frame, frame > 0 ? scene_at(pipeline, frame - 1) : now, now};
+  }
+  if (policy == Policy::Oracle) return;  // any frame of the sequence may be asked for again
+  auto& captured = state.captured;
+  captured.erase(captured.begin(), captured.lower_bound(frame));
+  if (policy != Policy::Lookahead) captured.erase(captured.upper_bound(frame + 1), captured.end());
+}
 
 const std::vector<LayerState>& states_at(const Pipeline& pipeline, PipelineState& state, int frame) {
   const auto [entry, is_new] = state.captured.try_emplace(frame);
   CapturedFrame& captured = entry->second;
   if (!is_new) return captured.states;
-  const layers::SceneFrame scene_frame = pipeline.scene.at(time_of(pipeline, frame));
+  const bool is_ahead = state.motion && frame > state.motion->frame;
+  const SceneFrame scene_frame =
+      is_ahead ? layers::predict_linear(state.motion->before, state.motion->now, frame - state.motion->frame)
+               : scene_at(pipeline, frame);
   captured.states.reserve(pipeline.layers.layers.size());
   for (const Layer& layer : pipeline.layers.layers)
     captured.states.push_back(
@@ -68,19 +126,22 @@ const std::vector<LayerState>& states_at(const Pipeline& pipeline, PipelineState
   return captured.states;
 }
 
-void forget_states_before(PipelineState& state, int frame) {
-  state.captured.erase(state.captured.begin(), state.captured.lower_bound(frame));
+const SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer, int frame) {
+  states_at(pipeline, state, frame);
+  std::optional<SpritePlacement>& known = state.captured.at(frame).placements[layer];
+  if (!known) known = place_regulated(pipeline, state, layer, frame, 1);
+  return *known;
 }
 
-const SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer, int frame) {
-  const LayerState& now = states_at(pipeline, state, frame)[layer];
-  std::optional<SpritePlacement>& known = state.captured.at(frame).placements[layer];
-  if (known) return *known;
-  const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
-  known = expected_reuse > 0
-              ? place_layer(pipeline, now, states_at(pipeline, state, frame + 1)[layer], expected_reuse)
-              : placement_without_growth(pipeline, now);
-  return *known;
+void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
+                     std::vector<LayerAssessment>& assessments) {
+  regulator::regulate_resolutions(assessments, pipeline.settings.regulator);
+  for (LayerAssessment& layer : assessments) {
+    if (!layer.in_view || layer.resolution == 1) continue;
+    std::optional<SpritePlacement>& placement = state.captured.at(frame).placements[layer.layer];
+    placement = place_regulated(pipeline, state, layer.layer, frame, layer.resolution);
+    layer.cost = cost_of(pipeline.layers.layers[layer.layer], placement->size_px);
+  }
 }
 
 SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerState& now) {
@@ -128,13 +189,16 @@ LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int
   const LayerState& now = states_at(pipeline, state, frame)[layer_id];
   LayerAssessment assessment;
   if (now.touches_display && memory.then)
-    assessment = assess_sprite(pipeline, *memory.then, memory.placement, now, frame - memory.frame_rendered);
+    assessment =
+        assess_sprite(pipeline, *memory.then, memory.placement, now, std::abs(frame - memory.frame_rendered));
   assessment.layer = layer.id;
+  assessment.frames_short_of_area = memory.frames_short_of_area;
+  see_through_resolution(assessment, memory.resolution);
   assessment.preferences = layer.preferences;
   assessment.in_view = now.touches_display;
   assessment.has_sprite = memory.then.has_value();
   if (!assessment.in_view) return assessment;
-  const bool must_be_exact = pipeline.settings.regulator.policy == regulator::Policy::Budget;
+  const bool must_be_exact = pipeline.settings.regulator.policy == Policy::Budget;
   assessment.cost = must_be_exact ? cost_of(layer, placement_at(pipeline, state, layer_id, frame).size_px)
                                   : estimated_cost(layer, now);
   return assessment;

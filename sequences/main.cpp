@@ -42,6 +42,16 @@ void add_run_options(CLI::App& command, CommandLine& line) {
                      "policy budget: triangles per frame; only first appearances may exceed it");
   command.add_option("--budget-pixels", line.budget_pixels,
                      "policy budget: sprite texels per frame, likewise");
+  command.add_option("--budget-chunks", line.budget_chunks,
+                     "policy budget: 32x32 chunks of sprites per frame, likewise");
+  command.add_option("--budget-ms", line.budget_ms,
+                     "policy budget: modelled render time per frame on talisman-1996, likewise");
+  command.add_option("--min-resolution", line.min_resolution,
+                     "policy budget: least resolution of sprites that must fit, (0, 1]; 1: never lowered");
+  command.add_flag("--budget-gap", line.budget_gap,
+                   "policy budget: also report the best choice of each frame, and what greedy misses");
+  command.add_option("--predict", line.predict,
+                     "policy lookahead: frames ahead are known, or linear: extrapolated from the last two");
   command.add_option("--cutoff-px", line.cutoff_px,
                      "policy budget: benefit up to which a layer is not drawn again, pixels");
   command.add_option("--warp", line.warp,
@@ -137,8 +147,8 @@ struct Commands {
   }
 
   void add_experiments() {
-    CLI::App* warps_command =
-        app.add_subcommand("warps", "update rate against error of every warp, and picture quality at one rate");
+    CLI::App* warps_command = app.add_subcommand(
+        "warps", "update rate against error of every warp, and picture quality at one rate");
     warps_command->add_option("--object", warps.object, "name or file of one object (all)");
     warps_command->add_option("--bound", warps.bound, "characteristic polyhedron: box8, dop14 or dop26");
     warps_command->add_option("--out", warps.out, "result folder (out/warps)");
@@ -146,7 +156,8 @@ struct Commands {
     warps_command->callback([this] { exit_code = run_warps(warps, std::cout); });
 
     CLI::App* accuracy_command = app.add_subcommand("accuracy", "what accuracy costs in time");
-    accuracy_command->add_flag("--solvers", accuracy.solvers, "every solver of warps: time, error, stability");
+    accuracy_command->add_flag("--solvers", accuracy.solvers,
+                               "every solver of warps: time, error, stability");
     accuracy_command->add_option("--inputs", accuracy.inputs, "boxes per number of points");
     accuracy_command->add_option("--out", accuracy.out, "result folder (out/accuracy)");
     accuracy_command->add_option("--progress", accuracy.progress, "auto, bar, plain or none");

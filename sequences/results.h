@@ -45,6 +45,7 @@ struct FrameLine {
   double plan_ms = 0, render_ms = 0, composite_ms = 0, io_ms = 0;
   double modelled_ms = 0;  ///< by the profile talisman-1996
   std::optional<FrameQuality> quality;
+  std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
 };
 
 FrameLine line_of(const Pipeline& pipeline, const FrameReport& report);
@@ -65,9 +66,18 @@ struct LayerSummary {
   int renders = 0, frames_shown = 0;
   double sum_geometric_px = 0;  ///< over the frames in which it was shown
   double max_geometric_px = 0;
+  double sum_resolution = 0;      ///< over the frames in which it was shown
   layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
   double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
   double mean_geometric_px() const { return frames_shown > 0 ? sum_geometric_px / frames_shown : 0; }
+  double mean_resolution() const { return frames_shown > 0 ? sum_resolution / frames_shown : 1; }
+};
+
+/// How far the greedy choice was from the best one, over the frames in which that was computed.
+struct GapSummary {
+  int frames = 0;
+  int exact_frames = 0;  ///< of them, the best choice was proved
+  double mean = 0, max = 0;
 };
 
 /// The whole run.
@@ -84,6 +94,7 @@ struct Summary {
   double cost_weighted_update_rate() const;  ///< weighted by polygons
   std::int64_t total(std::int64_t FrameLine::*field) const;
   double total(double FrameLine::*field) const;
+  GapSummary budget_gap() const;
   double planning_us_per_layer_and_frame() const;  ///< plan time over layers × frames
 };
 

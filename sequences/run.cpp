@@ -2,6 +2,7 @@
 #include "sequences/run.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -48,7 +49,11 @@ Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& 
           {"geometric_px", r.geometric_px},
           {"hold_frames", r.hold_frames},
           {"lookahead", {r.lookahead_frames, s.frames}},
-          {"budget", {r.budget_polygons, r.budget_pixels, r.cutoff_px}},
+          {"predict", regulator::name(r.predict)},
+          {"budget",
+           {r.budget_polygons, r.budget_pixels, r.budget_chunks,
+            std::isfinite(r.budget_ms) ? Json(r.budget_ms) : Json(nullptr), r.cutoff_px, r.min_resolution}},
+          {"budget_gap", s.budget_gap},
           {"sampling", {r.magnification, r.minification, r.anisotropy}},
           {"uncovered_px", r.uncovered_px},
           {"warp", warp::name(s.curve)},
@@ -182,7 +187,8 @@ class Runner {
   void finish(double fps) {
     decisions_->finish();
     frames_->finish();
-    if (options_.video) write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
+    if (options_.video)
+      write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
     write_text_atomically(options_.out + "/summary.json", json_of(summary_));
   }
 

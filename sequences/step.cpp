@@ -48,6 +48,14 @@ std::int64_t reference_pixels(const Pipeline& pipeline, const std::vector<LayerS
   return pixels;
 }
 
+/// How far the greedy choice of this frame was from the best one, if the policy makes one.
+std::optional<regulator::BudgetGap> gap_of(const Pipeline& pipeline, const FrameReport& report) {
+  const regulator::RegulatorOptions& options = pipeline.settings.regulator;
+  if (options.policy != regulator::Policy::Budget) return std::nullopt;
+  return regulator::budget_gap(regulator::candidates_of(report.assessments, options),
+                               regulator::left_after_first_appearances(report.assessments, options));
+}
+
 /// Chooses the instant as of which the layer is drawn, and completes the decision by how that sprite is shown
 /// now. Returns the instant.
 int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
@@ -55,6 +63,7 @@ int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
   const regulator::FrameRun run = choose_draw_instant(pipeline, state, decision.layer, frame);
   decision.reason += "; rendered as of frame " + std::to_string(run.instant) + ", serves " +
                      std::to_string(run.first) + "-" + std::to_string(run.last);
+  if (predicts(pipeline)) decision.reason += " if the motion goes on";
   if (run.instant == frame) return frame;
   const LayerAssessment shown =
       assess_sprite(pipeline, states_at(pipeline, state, run.instant)[decision.layer],
@@ -74,9 +83,16 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
       const int instant =
           looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
       memory = {states_at(pipeline, state, instant)[decision.layer],
-                placement_at(pipeline, state, decision.layer, instant), report.frame, instant, false};
+                placement_at(pipeline, state, decision.layer, instant),
+                report.frame,
+                instant,
+                false,
+                decision.resolution,
+                predicts(pipeline),
+                0};
       decision.cost = cost_of(pipeline.layers.layers[decision.layer], memory.placement.size_px);
     }
+    memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
     decision.depicts_frame = memory.depicts_frame;
   }
 }
@@ -98,17 +114,18 @@ std::vector<ShownSprite> sprites_shown(const PipelineState& state, const FrameRe
 /// Draws the sprites that this frame shows and the store does not hold yet.
 void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
                           const chunker::PreparedScene& prepared, FrameReport& report) {
-  std::map<int, SceneFrame> others;  // instants other than now, as of which sprites are drawn
+  std::map<std::pair<int, int>, SceneFrame> others;  // instants other than now; by when they were expected
   for (const ShownSprite& sprite : report.shown) {
     LayerMemory& memory = state.memory[sprite.layer];
     if (memory.drawn) continue;
     const int instant = memory.depicts_frame;
-    if (instant != report.frame && others.count(instant) == 0)
-      others.emplace(instant, pipeline.scene.at(time_of(pipeline, instant)));
-    chunker::RenderResult result =
-        chunker::render(prepared, instant != report.frame ? others.at(instant) : now,
-                        pipeline.layers.layers[sprite.layer].parts, pipeline.settings.view.display_px,
-                        memory.placement, pipeline.settings.render);
+    const std::pair key{memory.predicted ? memory.frame_rendered : instant, instant};
+    const bool as_of_now = key == std::pair{report.frame, report.frame};
+    if (!as_of_now && others.count(key) == 0)
+      others.emplace(key, scene_expected(pipeline, key.first, instant));
+    chunker::RenderResult result = chunker::render(
+        prepared, as_of_now ? now : others.at(key), pipeline.layers.layers[sprite.layer].parts,
+        pipeline.settings.view.display_px, memory.placement, pipeline.settings.render);
     state.sprites.put(sprite.layer, std::move(result.sprite));
     memory.drawn = true;
     if (memory.frame_rendered != report.frame) {
@@ -188,16 +205,19 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
 
   // Decide: no pixel is touched up to and including the plan.
   const Stopwatch plan_watch;
-  if (pipeline.settings.regulator.policy != regulator::Policy::Oracle) forget_states_before(state, frame);
+  begin_frame(pipeline, state, frame);
   const std::vector<LayerState>& states = states_at(pipeline, state, frame);
   const std::vector<int> order = order_layers(pipeline, states);
   for (const Layer& layer : pipeline.layers.layers) {
     report.assessments.push_back(assess_layer(pipeline, state, layer.id, frame));
     report.layers_assessed += report.assessments.back().in_view && report.assessments.back().has_sprite;
   }
+  if (pipeline.settings.regulator.policy == regulator::Policy::Budget)
+    fit_resolutions(pipeline, state, frame, report.assessments);
   report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
   double bookkeeping_ms = plan_watch.ms();
   report.pixels_reference = reference_pixels(pipeline, states);
+  if (pipeline.settings.budget_gap) report.budget_gap = gap_of(pipeline, report);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);
   report.shown = sprites_shown(state, report, order);
