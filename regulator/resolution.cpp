@@ -26,15 +26,26 @@ double after_waiting(double resolution, int frames, double least) {
 double share_of_resolution(std::span<const LayerAssessment> assessments, const RegulatorOptions& options) {
   const Budget budget = frame_budget(options);
   if (budget.pixels == kNoLimit && budget.chunks == kNoLimit) return 1;
-  std::int64_t pixels = 0, chunks = 0;
+  LayerCost desired;
+  const auto select = [&desired](const LayerCost& cost) {
+    desired.polygons += cost.polygons;
+    desired.pixels += cost.pixels;
+    desired.chunks += cost.chunks;
+  };
+  std::vector<Candidate> changed;
   for (const LayerAssessment& layer : assessments) {
-    const bool appears = layer.in_view && !layer.has_sprite;
+    if (layer.in_view && !layer.has_sprite) select(layer.cost);
     // What is at rest takes what is left, else it would hold back the others for ever.
-    if (!appears && (layer.identical || !is_candidate(layer, options))) continue;
-    pixels += layer.cost.pixels;
-    chunks += layer.cost.chunks;
+    if (!layer.identical && is_candidate(layer, options))
+      changed.push_back({layer.layer, benefit_px(layer), layer.cost});
   }
-  return std::min(share_of_axis(budget.pixels, pixels), share_of_axis(budget.chunks, chunks));
+  // What the polygons will not do for needs no area.
+  const Budget polygons{budget.polygons, kNoLimit, kNoLimit};
+  sort_by_benefit_per_cost(changed, polygons);
+  for (const Candidate& candidate : changed)
+    if (candidate.cost.polygons <= budget.polygons - std::min(desired.polygons, budget.polygons))
+      select(candidate.cost);
+  return std::min(share_of_axis(budget.pixels, desired.pixels), share_of_axis(budget.chunks, desired.chunks));
 }
 
 double regulated_resolution(const LayerAssessment& layer, double share, const RegulatorOptions& options) {

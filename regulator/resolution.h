@@ -4,8 +4,9 @@
 /// At which resolution is a layer drawn when not all can be afforded at full resolution? Step 6 of [LS97 6].
 ///
 ///   share  s = min(1, √(pixels / Σ desired pixels), √(chunks / Σ desired chunks))
-///          over the layers that were selected for rendering; pixels and chunks are the frame's budget.
-///          Area is allocated in proportion to desired area, so s is the same for all.
+///          over the layers that were selected for rendering and for whose polygons there is a budget;
+///          pixels and chunks are the frame's budget. Area is allocated in proportion to desired area, so s
+///          is the same for all.
 ///   first appearance      r = s
 ///   changed since         r = s, but 0.9 … 1.1 times the value at the last render, so that it does not
 ///                         fluctuate visibly; and a further tenth lower for every frame in a row in which the

@@ -66,8 +66,8 @@ struct LayerSummary {
   int renders = 0, frames_shown = 0;
   double sum_geometric_px = 0;  ///< over the frames in which it was shown
   double max_geometric_px = 0;
-  double sum_resolution = 0;      ///< over the frames in which it was shown
   layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
+  double sum_resolution = 0;      ///< over the frames in which it was shown
   double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
   double mean_geometric_px() const { return frames_shown > 0 ? sum_geometric_px / frames_shown : 0; }
   double mean_resolution() const { return frames_shown > 0 ? sum_resolution / frames_shown : 1; }
