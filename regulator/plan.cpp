@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "regulator/plan.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -67,10 +68,22 @@ std::string_view name(Action action) {
 }
 
 std::string comparison(const char* what, double value, const char* relation, double limit, const char* unit) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%s %.4g %s %.4g%s%s", what, value, relation, limit, *unit ? " " : "",
-                unit);
-  return text;
+  // As "%.4g" prints, at a fraction of its time: every layer has a reason in every frame.
+  const auto number = [](double v) {
+    char digits[40];
+    const auto end = std::to_chars(digits, digits + sizeof digits, v, std::chars_format::general, 4).ptr;
+    return std::string(digits, end);
+  };
+  std::string text = what;
+  text.reserve(64);
+  text += ' ';
+  text += number(value);
+  text += ' ';
+  text += relation;
+  text += ' ';
+  text += number(limit);
+  if (*unit) text += ' ';
+  return text += unit;
 }
 
 LayerDecision drop(const LayerAssessment& layer) {
