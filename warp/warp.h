@@ -14,6 +14,7 @@
 ///   0 0 1           0 0 1            0 0 1            0 0 1            g h 1
 ///   2 unknowns      3                4                6                8
 
+#include <array>
 #include <optional>
 #include <string_view>
 
@@ -32,6 +33,9 @@ enum class Family { Translation, Isotropic, XyScale, Affine, Perspective };
 /// squares; per and peri measure in homogeneous space, per2 and per2i after the divide; pers is Shade's
 /// quadrilateral, pers2 refines it.
 enum class Curve { trn, trni, iso, isoi, so, soi, aff, affi, per, peri, per2, per2i, pers, pers2 };
+inline constexpr std::array kAllCurves{Curve::trn,  Curve::trni,  Curve::iso,  Curve::isoi, Curve::so,
+                                       Curve::soi,  Curve::aff,   Curve::affi, Curve::per,  Curve::peri,
+                                       Curve::per2, Curve::per2i, Curve::pers, Curve::pers2};
 
 std::string_view name(Family family);
 std::string_view name(Curve curve);

@@ -42,10 +42,7 @@ struct Workload {
 
 void Capture(benchmark::State& run) {
   const Workload work(run);
-  layers::SceneFrame frame;
-  frame.scene = &work.world.scene;
-  frame.world_from_node = {work.place};
-  frame.lights = work.world.lights;
+  const layers::SceneFrame frame = work.world.frame_at(work.place);
   for (auto _ : run) {
     benchmark::DoNotOptimize(layers::capture(frame, work.world.layer, work.world.bound, work.world.view));
   }
@@ -66,10 +63,7 @@ void Place(benchmark::State& run) {
 
 void Frame(benchmark::State& run) {
   const Workload work(run);
-  layers::SceneFrame frame;
-  frame.scene = &work.world.scene;
-  frame.world_from_node = {work.place};
-  frame.lights = work.world.lights;
+  const layers::SceneFrame frame = work.world.frame_at(work.place);
   for (auto _ : run) {
     const auto now = layers::capture(frame, work.world.layer, work.world.bound, work.world.view);
     benchmark::DoNotOptimize(correspond(work.then, now, work.world.bound.hull));

@@ -66,13 +66,17 @@ struct World {
     lights.push_back({});
   }
 
-  layers::LayerState at(const dmat4& world_from_mover, const layers::CameraState& camera = {}) const {
+  layers::SceneFrame frame_at(const dmat4& world_from_mover, const layers::CameraState& camera = {}) const {
     layers::SceneFrame frame;
     frame.scene = &scene;
     frame.world_from_node = {world_from_mover};
     frame.camera = camera;
     frame.lights = lights;
-    return layers::capture(frame, layer, bound, view);
+    return frame;
+  }
+
+  layers::LayerState at(const dmat4& world_from_mover, const layers::CameraState& camera = {}) const {
+    return layers::capture(frame_at(world_from_mover, camera), layer, bound, view);
   }
 
   layers::Scene scene;

@@ -20,6 +20,15 @@ Pairs with_noise(Pairs pairs, std::uint64_t seed, double amount_px) {
   return pairs;
 }
 
+Pairs in_similar_display(Pairs pairs, std::uint64_t seed, double scale) {
+  Random random(seed + 78);
+  const double angle = random.uniform(-3, 3), c = scale * std::cos(angle), s = scale * std::sin(angle);
+  const Affine2 similarity{c, -s, random.uniform(-500, 500), s, c, random.uniform(-500, 500)};
+  for (auto& p : pairs.then_px) p = similarity(p);
+  for (auto& p : pairs.now_px) p = similarity(p);
+  return pairs;
+}
+
 Pairs near_collinear(std::uint64_t seed, int points, double thickness, double angle_rad, double length_px) {
   Random random(seed);
   const dvec2 along{std::cos(angle_rad), std::sin(angle_rad)}, across{-along.y, along.x};

@@ -29,6 +29,9 @@ using sequences::through;
 /// Moves each point now by up to `amount_px` along each axis.
 Pairs with_noise(Pairs pairs, std::uint64_t seed, double amount_px);
 
+/// The same pairs on a display that is scaled by `scale`, turned and moved: both sides by one similarity.
+Pairs in_similar_display(Pairs pairs, std::uint64_t seed, double scale);
+
 /// Points on a line at `angle_rad`, each off it by up to `thickness` × the length of the line; now = turned,
 /// stretched, noise of 1 px.
 Pairs near_collinear(std::uint64_t seed, int points, double thickness, double angle_rad,

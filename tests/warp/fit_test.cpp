@@ -22,10 +22,6 @@ using tests::Pairs;
 using tests::Random;
 using tests::with_noise;
 
-constexpr std::array kAllCurves{Curve::trn,  Curve::trni,  Curve::iso,  Curve::isoi, Curve::so,
-                                Curve::soi,  Curve::aff,   Curve::affi, Curve::per,  Curve::peri,
-                                Curve::per2, Curve::per2i, Curve::pers, Curve::pers2};
-
 constexpr std::array kLeastSquares{Curve::trn, Curve::iso, Curve::so, Curve::aff, Curve::per2};
 /// The curves that are quick enough for thousands of fits; the maximum norms have their own tests.
 constexpr std::array kQuick{Curve::trn, Curve::iso, Curve::so, Curve::aff, Curve::per, Curve::per2};

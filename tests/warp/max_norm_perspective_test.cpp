@@ -16,6 +16,7 @@ namespace {
 
 using tests::exact_perspective;
 using tests::gentle_perspective;
+using tests::in_similar_display;
 using tests::moving_box;
 using tests::Pairs;
 using tests::Random;
@@ -156,13 +157,8 @@ TEST(FitMaxNormPerspective, IsEquivariantUnderSimilarity) {
   tight.relative_gap = 1e-9;
   for (int seed = 0; seed < 200; ++seed) {
     const Pairs pairs = moving_box(seed, 14);
-    Random random(seed + 77);
-    const double scale = random.log_uniform(0.1, 10), angle = random.uniform(-3, 3);
-    const Affine2 similarity{scale * std::cos(angle), -scale * std::sin(angle), random.uniform(-500, 500),
-                             scale * std::sin(angle), scale * std::cos(angle),  random.uniform(-500, 500)};
-    Pairs moved = pairs;
-    for (auto& p : moved.then_px) p = similarity(p);
-    for (auto& p : moved.now_px) p = similarity(p);
+    const double scale = Random(seed + 77).log_uniform(0.1, 10);
+    const Pairs moved = in_similar_display(pairs, seed, scale);
     const double a = fit_post_divide(pairs, tight).max_px, b = fit_post_divide(moved, tight).max_px;
     ASSERT_NEAR(b, scale * a, 2e-9 * scale * a) << seed;
   }

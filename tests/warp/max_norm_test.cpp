@@ -19,6 +19,7 @@ namespace {
 
 using tests::exact_affine;
 using tests::gentle_affine;
+using tests::in_similar_display;
 using tests::moving_box;
 using tests::Pairs;
 using tests::Random;
@@ -181,13 +182,8 @@ TEST(FitMaxNorm, DecisionOfTheWorkloadTakesFewIterations) {
 TEST(FitMaxNorm, IsEquivariantUnderSimilarity) {
   for (int seed = 0; seed < 300; ++seed) {
     const Pairs pairs = moving_box(seed, 14);
-    Random random(seed + 77);
-    const double scale = random.log_uniform(0.01, 100), angle = random.uniform(-3, 3);
-    const Affine2 similarity{scale * std::cos(angle), -scale * std::sin(angle), random.uniform(-500, 500),
-                             scale * std::sin(angle), scale * std::cos(angle),  random.uniform(-500, 500)};
-    Pairs moved = pairs;
-    for (auto& p : moved.then_px) p = similarity(p);
-    for (auto& p : moved.now_px) p = similarity(p);
+    const double scale = Random(seed + 77).log_uniform(0.01, 100);
+    const Pairs moved = in_similar_display(pairs, seed, scale);
     FitOptions tight;
     tight.relative_gap = 1e-10;
     for (Family family : {Family::Translation, Family::Isotropic, Family::Affine}) {

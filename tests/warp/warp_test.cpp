@@ -18,10 +18,6 @@ using tests::gentle_affine;
 using tests::gentle_perspective;
 using tests::Random;
 
-constexpr std::array kAllCurves{Curve::trn,  Curve::trni,  Curve::iso,  Curve::isoi, Curve::so,
-                                Curve::soi,  Curve::aff,   Curve::affi, Curve::per,  Curve::peri,
-                                Curve::per2, Curve::per2i, Curve::pers, Curve::pers2};
-
 TEST(Curve, EveryNameIsReadBackAndNoTwoAreAlike) {
   std::set<std::string_view> names;
   for (Curve curve : kAllCurves) {
