@@ -183,6 +183,7 @@ Budget left_after_first_appearances(std::span<const LayerAssessment> assessments
 std::vector<LayerDecision> decide_budget(std::span<const LayerAssessment> assessments,
                                          const RegulatorOptions& options) {
   std::vector<LayerDecision> decisions;
+  decisions.reserve(assessments.size());
   for (const LayerAssessment& layer : assessments) decisions.push_back(decide_without_budget(layer, options));
   Budget left = draw_first_appearances(assessments, options, decisions);
 

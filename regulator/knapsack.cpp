@@ -30,7 +30,11 @@ bool is_before(const State& a, const State& b) {
   return a.benefit_px > b.benefit_px;
 }
 
-/// Keeps of the states only those that no other beats. The last one kept beats most, so it is asked first.
+/// States before a state, in order, with which it is compared. Those nearest in cost beat it if any does; to
+/// look further costs time in proportion and may only spare states, it never changes the answer.
+constexpr std::ptrdiff_t kCompared = 128;
+
+/// Drops states that another one beats.
 std::vector<State> unbeaten(std::vector<State> states) {
   std::stable_sort(states.begin(), states.end(), is_before);
   std::vector<State> kept;
@@ -38,7 +42,9 @@ std::vector<State> unbeaten(std::vector<State> states) {
     const auto beats_it = [&](const State& other) {
       return costs_no_more(other.spent, state.spent) && other.benefit_px >= state.benefit_px;
     };
-    if (std::none_of(kept.rbegin(), kept.rend(), beats_it)) kept.push_back(state);
+    const auto first = kept.rbegin();
+    if (std::none_of(first, first + std::min(kCompared, kept.rend() - first), beats_it))
+      kept.push_back(state);
   }
   return kept;
 }

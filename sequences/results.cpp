@@ -273,11 +273,12 @@ GapSummary Summary::budget_gap() const {
   for (const FrameLine& line : frames) {
     if (!line.budget_gap) continue;
     ++gap.frames;
-    gap.exact_frames += line.budget_gap->exact;
+    if (!line.budget_gap->exact) continue;  // nothing is known of it
+    ++gap.exact_frames;
     gap.mean += line.budget_gap->gap();
     gap.max = std::max(gap.max, line.budget_gap->gap());
   }
-  if (gap.frames > 0) gap.mean /= gap.frames;
+  if (gap.exact_frames > 0) gap.mean /= gap.exact_frames;
   return gap;
 }
 

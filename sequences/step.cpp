@@ -52,8 +52,10 @@ std::int64_t reference_pixels(const Pipeline& pipeline, const std::vector<LayerS
 std::optional<regulator::BudgetGap> gap_of(const Pipeline& pipeline, const FrameReport& report) {
   const regulator::RegulatorOptions& options = pipeline.settings.regulator;
   if (options.policy != regulator::Policy::Budget) return std::nullopt;
+  constexpr std::size_t kMostStates = 20'000;  // some 20 ms, then the frame counts as not proved
   return regulator::budget_gap(regulator::candidates_of(report.assessments, options),
-                               regulator::left_after_first_appearances(report.assessments, options));
+                               regulator::left_after_first_appearances(report.assessments, options),
+                               kMostStates);
 }
 
 /// Chooses the instant as of which the layer is drawn, and completes the decision by how that sprite is shown
@@ -101,6 +103,7 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
 std::vector<ShownSprite> sprites_shown(const PipelineState& state, const FrameReport& report,
                                        const std::vector<int>& order) {
   std::vector<ShownSprite> shown;
+  shown.reserve(order.size());
   for (const int layer : order) {
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
@@ -208,6 +211,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   begin_frame(pipeline, state, frame);
   const std::vector<LayerState>& states = states_at(pipeline, state, frame);
   const std::vector<int> order = order_layers(pipeline, states);
+  report.assessments.reserve(pipeline.layers.layers.size());
   for (const Layer& layer : pipeline.layers.layers) {
     report.assessments.push_back(assess_layer(pipeline, state, layer.id, frame));
     report.layers_assessed += report.assessments.back().in_view && report.assessments.back().has_sprite;
