@@ -15,6 +15,12 @@ void extend_chain(std::vector<dvec2>& chain, std::size_t fixed, dvec2 p) {
   chain.push_back(p);
 }
 
+/// Nothing to cut off: the common case, worth a look before a new polygon is made.
+bool is_within_side(const std::vector<dvec2>& polygon, int axis, double sign, double limit) {
+  return std::all_of(polygon.begin(), polygon.end(),
+                     [=](const dvec2& p) { return sign * (p[axis] - limit) >= 0; });
+}
+
 /// Keeps the side where sign · coordinate ≥ sign · limit.
 std::vector<dvec2> clip_to_side(const std::vector<dvec2>& polygon, int axis, double sign, double limit) {
   std::vector<dvec2> result;
@@ -48,9 +54,12 @@ std::vector<dvec2> convex_hull(std::vector<dvec2> points) {
 }
 
 std::vector<dvec2> clip_to_rect(std::vector<dvec2> polygon, const RectD& rect) {
+  const auto cut = [&polygon](int axis, double sign, double limit) {
+    if (!is_within_side(polygon, axis, sign, limit)) polygon = clip_to_side(polygon, axis, sign, limit);
+  };
   for (const int axis : {0, 1}) {
-    polygon = clip_to_side(polygon, axis, 1, rect.lo[axis]);
-    polygon = clip_to_side(polygon, axis, -1, rect.hi[axis]);
+    cut(axis, 1, rect.lo[axis]);
+    cut(axis, -1, rect.hi[axis]);
   }
   return polygon;
 }

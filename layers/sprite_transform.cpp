@@ -2,6 +2,7 @@
 #include "layers/sprite_transform.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -34,9 +35,14 @@ struct Lattice {
   dvec2 operator()(dvec2 p) const {
     return {density.x * (cos * p.x + sin * p.y), density.y * (cos * p.y - sin * p.x)};
   }
+  /// Of finite points; without the calls that RectD::include makes for the sake of NaN.
   RectD bounds(const std::vector<dvec2>& points) const {
     RectD result;
-    for (const dvec2 p : points) result.include((*this)(p));
+    for (const dvec2 point : points) {
+      const dvec2 p = (*this)(point);
+      result.lo = {std::min(result.lo.x, p.x), std::min(result.lo.y, p.y)};
+      result.hi = {std::max(result.hi.x, p.x), std::max(result.hi.y, p.y)};
+    }
     return result;
   }
   Affine2 screen_from_sprite(int x0, int y0) const {
@@ -46,20 +52,35 @@ struct Lattice {
   }
 };
 
+constexpr int kFewestDirections = 2, kMostDirections = 30;
+
+/// Cosine and sine of direction k of n, for every n: they are asked for in every placement.
+struct Directions {
+  std::array<std::array<dvec2, kMostDirections>, kMostDirections + 1> of;
+  Directions() {
+    for (int n = kFewestDirections; n <= kMostDirections; ++n)
+      for (int k = 0; k < n; ++k) {
+        const double angle = k * (std::numbers::pi / 2) / n;
+        of[n][k] = {std::cos(angle), std::sin(angle)};
+      }
+  }
+};
+
 double padded_area(const RectD& r) { return (r.width() + 2 * kPadding) * (r.height() + 2 * kPadding); }
 
 /// The slab direction with the least area [LS97 3.3]; the axes unless that saves the share that was asked
 /// for.
 Lattice choose_direction(const std::vector<dvec2>& shown, const PlacementOptions& options, dvec2 density) {
-  const int directions = std::clamp(options.slab_directions, 2, 30);
+  static const Directions kDirections;
+  const int directions = std::clamp(options.slab_directions, kFewestDirections, kMostDirections);
   const Lattice axes{1, 0, density};
   Lattice best = axes;
   double best_area = padded_area(axes.bounds(shown));
   const double gain = in_range(options.min_rotation_gain, 0, 1, PlacementOptions{}.min_rotation_gain);
   const double area_to_rotate = (1 - gain) * best_area;
   for (int k = 1; k < directions; ++k) {
-    const double angle = k * (std::numbers::pi / 2) / directions;
-    const Lattice rotated{std::cos(angle), std::sin(angle), density};
+    const dvec2 direction = kDirections.of[directions][k];
+    const Lattice rotated{direction.x, direction.y, density};
     const double area = padded_area(rotated.bounds(shown));
     if (area >= best_area || area > area_to_rotate) continue;
     best = rotated;

@@ -2,27 +2,31 @@
 #include "regulator/budget.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
-#include "layers/check.h"
 #include "regulator/policies.h"
+#include "regulator/profile.h"
+#include "regulator/resolution.h"
 
 namespace talisman::regulator {
 
 namespace {
 
-/// A budget that was spent beyond its end is empty, and no limit stays none.
 std::int64_t less(std::int64_t budget, std::int64_t cost) {
   return budget == kNoLimit ? kNoLimit : std::max<std::int64_t>(budget - cost, 0);
-}
-
-Budget after(const Budget& budget, const LayerCost& cost) {
-  return {less(budget.polygons, cost.polygons), less(budget.pixels, cost.pixels)};
 }
 
 double share(std::int64_t cost, std::int64_t budget) {
   if (budget == kNoLimit) return 0;
   return static_cast<double>(cost) / static_cast<double>(std::max<std::int64_t>(budget, 1));
+}
+
+/// What `ms` of work at `rate_per_s` can do. NaN counts as no limit: first_defect rejects it.
+std::int64_t work_in(double ms, double rate_per_s) {
+  const double work = std::floor(ms * 1e-3 * rate_per_s);
+  return work < 9e18 ? static_cast<std::int64_t>(std::max(work, 0.0)) : kNoLimit;
 }
 
 bool appears(const LayerAssessment& layer) { return layer.in_view && !layer.has_sprite; }
@@ -32,16 +36,49 @@ double smear_px(const fiducials::Sampling& s) {
          (std::fmax(s.anisotropy, 1) - 1);
 }
 
-/// "polygons 5000 > 3000 left of 8000", for the first budget that is too small; empty if it fits.
+/// One of the things of which there is a budget.
+struct Limited {
+  const char* what;
+  std::int64_t needed, left, whole;
+  bool by_time;  ///< the limit follows from budget_ms
+};
+
+std::array<Limited, 3> all_limited(const LayerCost& cost, const Budget& left,
+                                   const RegulatorOptions& options) {
+  const Budget whole = frame_budget(options);
+  return {
+      {{"polygons", cost.polygons, left.polygons, whole.polygons, whole.polygons < options.budget_polygons},
+       {"pixels", cost.pixels, left.pixels, whole.pixels, whole.pixels < options.budget_pixels},
+       {"chunks", cost.chunks, left.chunks, whole.chunks, false}}};
+}
+
+/// "polygons 5000 > 3000 left of 8000", for the first budget that is too small, or "dearer than the whole
+/// budget of 4000 polygons, needs 5000"; empty if it fits.
 std::string excess(const LayerCost& cost, const Budget& left, const RegulatorOptions& options) {
-  const auto text = [](const char* what, std::int64_t needed, std::int64_t rest, std::int64_t budget) {
-    return std::string(what) + " " + std::to_string(needed) + " > " + std::to_string(rest) + " left of " +
-           std::to_string(budget);
+  if (left.affords(cost)) return {};
+  const auto all = all_limited(cost, left, options);
+  const auto time = [&](const Limited& l) {
+    char text[48] = "";
+    if (l.by_time) std::snprintf(text, sizeof text, " in %.4g ms", options.budget_ms);
+    return std::string(text);
   };
-  if (cost.polygons > left.polygons)
-    return text("polygons", cost.polygons, left.polygons, options.budget_polygons);
-  if (cost.pixels > left.pixels) return text("pixels", cost.pixels, left.pixels, options.budget_pixels);
+  for (const Limited& l : all)
+    if (l.needed > l.whole)
+      return "dearer than the whole budget of " + std::to_string(l.whole) + " " + l.what + time(l) +
+             ", needs " + std::to_string(l.needed);
+  for (const Limited& l : all)
+    if (l.needed > l.left)
+      return std::string(l.what) + " " + std::to_string(l.needed) + " > " + std::to_string(l.left) +
+             " left of " + std::to_string(l.whole) + time(l);
   return {};
+}
+
+/// "; resolution 0.81", or nothing at full resolution.
+std::string at_resolution(double resolution) {
+  if (resolution == 1) return {};
+  char text[40];
+  std::snprintf(text, sizeof text, "; resolution %.3g", resolution);
+  return text;
 }
 
 /// The old sprite where a render is not worth it or not affordable: warped if its warp is sound.
@@ -53,8 +90,8 @@ LayerDecision keep(const LayerAssessment& layer, std::string reason) {
 /// Decisions that do not depend on the budget; candidates stay as "cut-off" until they are ranked.
 LayerDecision decide_without_budget(const LayerAssessment& layer, const RegulatorOptions& options) {
   if (!layer.in_view) return drop(layer);
-  if (!layer.has_sprite) return rerender(layer, "first_appearance");
-  if (layer.identical) return reuse(layer, "unchanged");
+  if (!layer.has_sprite) return rerender(layer, "first_appearance" + at_resolution(layer.resolution));
+  if (nothing_to_gain(layer)) return reuse(layer, "unchanged" + at_resolution(layer.resolution_then));
   const double benefit = benefit_px(layer);
   if (benefit > options.cutoff_px) return keep(layer, "deferred: max_update_rate");
   return keep(layer, comparison("benefit", benefit, "<=", options.cutoff_px, "px"));
@@ -63,7 +100,7 @@ LayerDecision decide_without_budget(const LayerAssessment& layer, const Regulato
 /// First appearances spend first, whatever is left.
 Budget draw_first_appearances(std::span<const LayerAssessment> assessments, const RegulatorOptions& options,
                               std::vector<LayerDecision>& decisions) {
-  Budget left{options.budget_polygons, options.budget_pixels};
+  Budget left = frame_budget(options);
   for (std::size_t i = 0; i < assessments.size(); ++i) {
     if (!appears(assessments[i])) continue;
     const std::string overdraft = excess(assessments[i].cost, left, options);
@@ -73,43 +110,10 @@ Budget draw_first_appearances(std::span<const LayerAssessment> assessments, cons
   return left;
 }
 
-/// A choice of some of the candidates that no other choice beats in all three numbers.
-struct State {
-  std::int64_t polygons = 0, pixels = 0;
-  double benefit_px = 0;
-  int parent = -1;  ///< index into the history; -1: nothing chosen
-  int candidate = -1;
-};
-
-bool beats(const State& a, const State& b) {
-  return a.polygons <= b.polygons && a.pixels <= b.pixels && a.benefit_px >= b.benefit_px;
-}
-
-/// Keeps of the states only those that no other beats. Sorted by polygons, a state can be beaten only by an
-/// earlier one.
-std::vector<State> unbeaten(std::vector<State> states) {
-  std::stable_sort(states.begin(), states.end(), [](const State& a, const State& b) {
-    if (a.polygons != b.polygons) return a.polygons < b.polygons;
-    if (a.pixels != b.pixels) return a.pixels < b.pixels;
-    return a.benefit_px > b.benefit_px;
-  });
-  std::vector<State> kept;
-  for (const State& state : states) {
-    const auto beats_it = [&](const State& other) { return beats(other, state); };
-    if (std::none_of(kept.rbegin(), kept.rend(), beats_it)) kept.push_back(state);
-  }
-  return kept;
-}
-
-Choice choice_of(std::vector<int> layers, double benefit) {
-  std::sort(layers.begin(), layers.end());
-  return {std::move(layers), benefit, true};
-}
-
 }  // namespace
 
 double benefit_px(const LayerAssessment& layer) {
-  if (layer.identical) return 0;
+  if (nothing_to_gain(layer)) return 0;
   if (!has_sound_fit(layer) || due_by_minimum_rate(layer)) return kMostBenefitPx;
   const fiducials::Report& f = layer.fiducials;
   const layers::FiducialWeights& w = layer.preferences.importance;
@@ -124,12 +128,31 @@ double benefit_px(const LayerAssessment& layer) {
   return benefit < kMostBenefitPx ? benefit : kMostBenefitPx;  // NaN too
 }
 
+Budget frame_budget(const RegulatorOptions& options) {
+  Budget budget{options.budget_polygons, options.budget_pixels, options.budget_chunks};
+  const HardwareProfile& profile = talisman_1996();
+  budget.polygons = std::min(budget.polygons, work_in(options.budget_ms, profile.polygons_per_s));
+  budget.pixels = std::min(budget.pixels, work_in(options.budget_ms, profile.renderer_pixels_per_s));
+  return budget;
+}
+
+bool is_limited(const RegulatorOptions& options) {
+  const Budget budget = frame_budget(options);
+  return budget.polygons != kNoLimit || budget.pixels != kNoLimit || budget.chunks != kNoLimit;
+}
+
+Budget after(const Budget& budget, const LayerCost& cost) {
+  return {less(budget.polygons, cost.polygons), less(budget.pixels, cost.pixels),
+          less(budget.chunks, cost.chunks)};
+}
+
 double share_of_budget(const LayerCost& cost, const Budget& budget) {
-  return share(cost.polygons, budget.polygons) + share(cost.pixels, budget.pixels);
+  return share(cost.polygons, budget.polygons) + share(cost.pixels, budget.pixels) +
+         share(cost.chunks, budget.chunks);
 }
 
 void sort_by_benefit_per_cost(std::vector<Candidate>& candidates, const Budget& budget) {
-  const bool limited = budget.polygons != kNoLimit || budget.pixels != kNoLimit;
+  const bool limited = budget.polygons != kNoLimit || budget.pixels != kNoLimit || budget.chunks != kNoLimit;
   const auto urgency = [&](const Candidate& c) {
     const double cost = limited ? share_of_budget(c.cost, budget) : 1;
     return cost > 0 ? c.benefit_px / cost : HUGE_VAL;
@@ -140,76 +163,22 @@ void sort_by_benefit_per_cost(std::vector<Candidate>& candidates, const Budget& 
   });
 }
 
-Choice greedy_choice(std::span<const Candidate> candidates, const Budget& budget) {
-  std::vector<Candidate> order(candidates.begin(), candidates.end());
-  sort_by_benefit_per_cost(order, budget);
-  std::vector<int> chosen;
-  Budget left = budget;
-  for (const Candidate& candidate : order) {
-    if (!left.affords(candidate.cost)) continue;
-    left = after(left, candidate.cost);
-    chosen.push_back(candidate.layer);
-  }
-  Choice choice = choice_of(std::move(chosen), 0);
-  for (const Candidate& candidate : candidates)
-    if (std::binary_search(choice.layers.begin(), choice.layers.end(), candidate.layer))
-      choice.benefit_px += candidate.benefit_px;
-  return choice;
-}
-
-Choice optimal_choice(std::span<const Candidate> candidates, const Budget& budget, std::size_t most_states) {
-  TALISMAN_CHECK_GE(most_states, std::size_t{1});
-  std::vector<State> history;  // every state that was ever extended, for the way back
-  std::vector<State> states = {State{}};
-  for (std::size_t c = 0; c < candidates.size(); ++c) {
-    const Candidate& candidate = candidates[c];
-    std::vector<State> next = states;
-    for (const State& state : states) {
-      const LayerCost spent{state.polygons + candidate.cost.polygons, state.pixels + candidate.cost.pixels, 0,
-                            0};
-      if (!budget.affords(spent)) continue;
-      history.push_back(state);
-      next.push_back({spent.polygons, spent.pixels, state.benefit_px + candidate.benefit_px,
-                      static_cast<int>(history.size()) - 1, static_cast<int>(c)});
-    }
-    if (history.size() > most_states) {
-      Choice greedy = greedy_choice(candidates, budget);
-      greedy.exact = false;
-      return greedy;
-    }
-    states = unbeaten(std::move(next));
-  }
-  const State* best = &states.front();
-  for (const State& state : states)
-    if (state.benefit_px > best->benefit_px) best = &state;
-  std::vector<int> chosen;
-  for (const State* s = best; s->candidate >= 0; s = &history[s->parent])
-    chosen.push_back(candidates[s->candidate].layer);
-  return choice_of(std::move(chosen), best->benefit_px);
-}
-
-double greedy_gap(std::span<const Candidate> candidates, const Budget& budget) {
-  const double optimal = optimal_choice(candidates, budget).benefit_px;
-  const double greedy = greedy_choice(candidates, budget).benefit_px;
-  return optimal > 0 ? std::max(0.0, (optimal - greedy) / optimal) : 0;
+bool is_candidate(const LayerAssessment& layer, const RegulatorOptions& options) {
+  if (!layer.in_view || !layer.has_sprite || !(benefit_px(layer) > options.cutoff_px)) return false;
+  return !(has_sound_fit(layer) && barred_by_maximum_rate(layer));
 }
 
 std::vector<Candidate> candidates_of(std::span<const LayerAssessment> assessments,
                                      const RegulatorOptions& options) {
   std::vector<Candidate> candidates;
-  for (const LayerAssessment& layer : assessments) {
-    if (!layer.in_view || !layer.has_sprite) continue;
-    const double benefit = benefit_px(layer);
-    if (!(benefit > options.cutoff_px)) continue;
-    if (has_sound_fit(layer) && barred_by_maximum_rate(layer)) continue;
-    candidates.push_back({layer.layer, benefit, layer.cost});
-  }
+  for (const LayerAssessment& layer : assessments)
+    if (is_candidate(layer, options)) candidates.push_back({layer.layer, benefit_px(layer), layer.cost});
   return candidates;
 }
 
 Budget left_after_first_appearances(std::span<const LayerAssessment> assessments,
                                     const RegulatorOptions& options) {
-  Budget left{options.budget_polygons, options.budget_pixels};
+  Budget left = frame_budget(options);
   for (const LayerAssessment& layer : assessments)
     if (appears(layer)) left = after(left, layer.cost);
   return left;
@@ -218,6 +187,7 @@ Budget left_after_first_appearances(std::span<const LayerAssessment> assessments
 std::vector<LayerDecision> decide_budget(std::span<const LayerAssessment> assessments,
                                          const RegulatorOptions& options) {
   std::vector<LayerDecision> decisions;
+  decisions.reserve(assessments.size());
   for (const LayerAssessment& layer : assessments) decisions.push_back(decide_without_budget(layer, options));
   Budget left = draw_first_appearances(assessments, options, decisions);
 
@@ -233,7 +203,10 @@ std::vector<LayerDecision> decide_budget(std::span<const LayerAssessment> assess
     const std::string gain = comparison("benefit", candidate.benefit_px, ">", options.cutoff_px, "px");
     const std::string lack = excess(candidate.cost, left, options);
     LayerDecision& decision = decisions[index_of(candidate.layer)];
-    decision = lack.empty() ? rerender(layer, gain) : keep(layer, "deferred: budget, " + lack + "; " + gain);
+    const std::string detail = gain + at_resolution(layer.resolution);
+    decision =
+        lack.empty() ? rerender(layer, detail) : keep(layer, "deferred: budget, " + lack + "; " + detail);
+    decision.short_of_area = candidate.cost.pixels > left.pixels || candidate.cost.chunks > left.chunks;
     if (lack.empty()) left = after(left, candidate.cost);
   }
   return decisions;

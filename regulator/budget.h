@@ -13,21 +13,31 @@
 ///                    V  depth to which a cut side has come into view + size of a side that has turned to
 ///                       the eye, px
 ///                    w  the layer's importance [LS97 2.4], no unit
-///                  0 where the state is identical; kMostBenefitPx where the old sprite cannot be warped
-///                  soundly or the author's minimum update rate makes a render due
-///   3 cost         c = polygons / polygon budget + pixels / pixel budget            (`share_of_budget`)
+///                  0 where a render would draw the same again; kMostBenefitPx where the old sprite cannot be
+///                  warped soundly or the author's minimum update rate makes a render due
+///   3 cost         c = polygons / budget + pixels / budget + chunks / budget, of those that are limited,
+///                  at the resolution of step 6                                      (`share_of_budget`)
 ///   4 order        by B / c, largest first; ties by layer id
 ///   5 cut-off      B ≤ cutoff_px: not drawn again whatever is left
-///   6 parameters   the resolution of sprites is not regulated here
+///   6 parameters   the resolution of sprites                             (regulator/resolution.h); its costs
+///                  are known before step 3, so that the order and the spending are those of what is drawn
 ///   7 render       in order; a layer that does not fit is deferred, a later and cheaper one may still fit
 ///
-/// The budget of steps 3 and 7 is what first appearances leave of the frame's.
+/// The budget of steps 3 and 7 is what first appearances leave of the frame's. A budget of modelled time is
+/// exactly a budget of polygons and one of pixels, because a render takes the longer of the two times
+/// (regulator/profile.h):
+///
+///   max(polygons / polygon rate, pixels / pixel rate) ≤ t   ⇔   polygons ≤ t · rate  and  pixels ≤ t · rate
+///
+/// Pixels are those of the sprite's rectangle, each once, because a plan knows nothing of hidden surfaces
+/// [LS97 footnote 11].
 ///
 /// First appearances have nothing to show instead: they come first, in the order of layer ids, and are drawn
 /// even beyond the budget. In no other case is more spent than the budget.
 ///
-/// The choice of step 7 is a 0/1 knapsack with two constraints (Horvitz & Lengyel 1997 choose by expected
-/// perceived cost). `greedy_choice` can be arbitrarily bad in theory; `optimal_choice` tells how bad it is.
+/// The choice of step 7 is a 0/1 knapsack with up to three constraints (Horvitz & Lengyel 1997 choose by
+/// expected perceived cost). `greedy_choice` can be arbitrarily bad in theory; `optimal_choice` tells how bad
+/// it is.
 
 #include <cstdint>
 #include <span>
@@ -39,9 +49,20 @@ namespace talisman::regulator {
 
 /// What may be spent.
 struct Budget {
-  std::int64_t polygons = kNoLimit, pixels = kNoLimit;
-  bool affords(const LayerCost& cost) const { return cost.polygons <= polygons && cost.pixels <= pixels; }
+  std::int64_t polygons = kNoLimit, pixels = kNoLimit, chunks = kNoLimit;
+  bool affords(const LayerCost& cost) const {
+    return cost.polygons <= polygons && cost.pixels <= pixels && cost.chunks <= chunks;
+  }
 };
+
+/// The whole budget of a frame: budget_ms becomes limits of polygons and of pixels.
+Budget frame_budget(const RegulatorOptions& options);
+
+/// Is there any limit at all?
+bool is_limited(const RegulatorOptions& options);
+
+/// What `cost` leaves; not negative, and no limit stays none.
+Budget after(const Budget& budget, const LayerCost& cost);
 
 /// One layer that would gain by a render.
 struct Candidate {
@@ -68,7 +89,7 @@ inline constexpr double kPxPerLight = 80;
 /// B, 0 … kMostBenefitPx; what is not a number counts as the most.
 double benefit_px(const LayerAssessment& layer);
 
-/// c ≥ 0: 1 is a whole budget of polygons or of pixels. What is not limited costs nothing.
+/// c ≥ 0: 1 is a whole budget of polygons, pixels or chunks. What is not limited costs nothing.
 double share_of_budget(const LayerCost& cost, const Budget& budget);
 
 /// Step 4: by benefit / cost, largest first, ties by id. Without any cost the benefit alone decides.
@@ -78,17 +99,29 @@ void sort_by_benefit_per_cost(std::vector<Candidate>& candidates, const Budget& 
 Choice greedy_choice(std::span<const Candidate> candidates, const Budget& budget);
 
 /// The most benefit that the budget can buy: dynamic programming over the choices that no other choice beats
-/// in polygons, pixels and benefit at once (Nemhauser & Ullmann 1969). For analysis of small frames: time and
-/// memory grow with the number of such choices, at worst 2ⁿ; beyond `most_states` (≥ 1) the greedy choice is
-/// returned with `exact` false. Costs must not be negative.
+/// in polygons, pixels, chunks and benefit at once (Nemhauser & Ullmann 1969), without those that cannot
+/// exceed the greedy benefit even if the rest were divisible (Dantzig 1957, on c). For analysis of small
+/// frames: time and memory grow with the number of such choices, at worst 2ⁿ; beyond `most_states` (≥ 1) the
+/// greedy choice is returned with `exact` false. Costs must not be negative.
 Choice optimal_choice(std::span<const Candidate> candidates, const Budget& budget,
                       std::size_t most_states = 200'000);
+
+/// Greedy against best, for one frame.
+struct BudgetGap {
+  double greedy_px = 0, optimal_px = 0;  ///< benefit of all layers chosen
+  bool exact = true;                     ///< false: too many layers, `optimal_px` is only the greedy benefit
+  double gap() const;  ///< share of the optimum that greedy misses, 0 … 1; 0 for nothing to gain
+};
+BudgetGap budget_gap(std::span<const Candidate> candidates, const Budget& budget,
+                     std::size_t most_states = 200'000);
 
 /// The share of the optimal benefit that the greedy choice misses, 0 … 1; 0 where there is nothing to gain.
 double greedy_gap(std::span<const Candidate> candidates, const Budget& budget);
 
-/// The layers that step 5 lets through, in the order of ids: in view, drawn before, worth it, not barred by
-/// their maximum update rate.
+/// Does step 5 let the layer through? In view, drawn before, worth it, not barred by its maximum update rate.
+bool is_candidate(const LayerAssessment& layer, const RegulatorOptions& options);
+
+/// The layers that step 5 lets through, in the order of ids.
 std::vector<Candidate> candidates_of(std::span<const LayerAssessment> assessments,
                                      const RegulatorOptions& options);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "regulator/plan.h"
 
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <numbers>
@@ -39,6 +40,22 @@ std::optional<Policy> policy_from_name(std::string_view text) {
   return std::nullopt;
 }
 
+std::string_view name(Prediction prediction) {
+  switch (prediction) {
+    case Prediction::Known:
+      return "known";
+    case Prediction::Linear:
+      return "linear";
+  }
+  return "?";
+}
+
+std::optional<Prediction> prediction_from_name(std::string_view text) {
+  for (const Prediction prediction : kAllPredictions)
+    if (name(prediction) == text) return prediction;
+  return std::nullopt;
+}
+
 std::string_view name(Action action) {
   switch (action) {
     case Action::Reuse:
@@ -52,10 +69,22 @@ std::string_view name(Action action) {
 }
 
 std::string comparison(const char* what, double value, const char* relation, double limit, const char* unit) {
-  char text[160];
-  std::snprintf(text, sizeof text, "%s %.4g %s %.4g%s%s", what, value, relation, limit, *unit ? " " : "",
-                unit);
-  return text;
+  // As "%.4g" prints, at a fraction of its time: every layer has a reason in every frame.
+  const auto number = [](double v) {
+    char digits[40];
+    const auto end = std::to_chars(digits, digits + sizeof digits, v, std::chars_format::general, 4).ptr;
+    return std::string(digits, end);
+  };
+  std::string text = what;
+  text.reserve(64);
+  text += ' ';
+  text += number(value);
+  text += ' ';
+  text += relation;
+  text += ' ';
+  text += number(limit);
+  if (*unit) text += ' ';
+  return text += unit;
 }
 
 LayerDecision drop(const LayerAssessment& layer) {
@@ -65,31 +94,24 @@ LayerDecision drop(const LayerAssessment& layer) {
 LayerDecision rerender(const LayerAssessment& layer, std::string reason) {
   LayerDecision decision{layer.layer, Action::Rerender, std::move(reason), {}, 0, 0, layer.cost, -1};
   decision.warp_geometric_px = layer.has_sprite ? layer.fiducials.geometric.px : 0;
+  decision.resolution = layer.resolution;
   return decision;
 }
 
 LayerDecision reuse(const LayerAssessment& layer, std::string reason) {
   const double error = layer.fiducials.geometric.px;
-  return {layer.layer,
-          Action::Reuse,
-          std::move(reason),
-          layer.fitted.warp,
-          error,
-          error,
-          {},
-          -1,
-          layer.fiducials.photometric.multiplier};
+  LayerDecision decision{layer.layer, Action::Reuse, std::move(reason), layer.fitted.warp, error, error, {},
+                         -1};
+  decision.shown_color = layer.fiducials.photometric.multiplier;
+  decision.resolution = layer.resolution_then;
+  return decision;
 }
 
 LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason) {
-  return {layer.layer,
-          Action::Reuse,
-          std::move(reason),
-          {},
-          layer.held_geometric_px,
-          layer.fiducials.geometric.px,
-          {},
-          -1};
+  LayerDecision decision = reuse(layer, std::move(reason));
+  decision.shown_warp = {};
+  decision.shown_geometric_px = layer.held_geometric_px;
+  return decision;
 }
 
 LayerDecision decide_every_frame(const LayerAssessment& layer, std::string reason) {
@@ -158,6 +180,10 @@ std::string first_defect(const RegulatorOptions& o) {
   if (o.budget_polygons < 0)
     return broken("budget_polygons", static_cast<double>(o.budget_polygons), "at least 0");
   if (o.budget_pixels < 0) return broken("budget_pixels", static_cast<double>(o.budget_pixels), "at least 0");
+  if (o.budget_chunks < 0) return broken("budget_chunks", static_cast<double>(o.budget_chunks), "at least 0");
+  if (!(o.budget_ms >= 0)) return broken("budget_ms", o.budget_ms, "at least 0");
+  if (!(o.min_resolution > 0 && o.min_resolution <= 1))
+    return broken("min_resolution", o.min_resolution, "above 0 and at most 1");
   if (!(o.cutoff_px >= 0)) return broken("cutoff_px", o.cutoff_px, "at least 0");
   return {};
 }

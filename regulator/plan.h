@@ -59,12 +59,25 @@ struct LayerAssessment {
   warp::FitResult fitted;        ///< valid if has_sprite
   fiducials::Report fiducials;   ///< valid if has_sprite
   double held_geometric_px = 0;  ///< error of showing the sprite where it was (identity warp)
-  LayerCost cost;                ///< of rendering it now
+  LayerCost cost;                ///< of rendering it now, at `resolution`
   layers::LayerPreferences preferences;
+  double resolution = 1;  ///< at which it would be rendered now, relative to what its author asks for; (0, 1]
+  double resolution_then = 1;    ///< at which its sprite was rendered, likewise
+  int frames_short_of_area = 0;  ///< frames in a row in which it was deferred for want of pixels or chunks
 };
 
 /// The budget of a frame that is not limited.
 inline constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+inline constexpr double kNoLimitMs = std::numeric_limits<double>::infinity();
+
+/// What Lookahead knows of the frames ahead.
+enum class Prediction {
+  Known,   ///< the motion itself, as authored
+  Linear,  ///< the last two frames, extrapolated (layers/predict.h)
+};
+inline constexpr std::array kAllPredictions = {Prediction::Known, Prediction::Linear};
+std::string_view name(Prediction prediction);  ///< "known", "linear"
+std::optional<Prediction> prediction_from_name(std::string_view text);
 
 /// Options of all policies. Thresholds: a layer is rendered again when a fiducial exceeds its threshold.
 struct RegulatorOptions {
@@ -88,6 +101,13 @@ struct RegulatorOptions {
                               ///< ahead; 0 is Threshold; planning time grows with N, renders fall
   std::int64_t budget_polygons = kNoLimit;  ///< Budget: triangles per frame, ≥ 0; more is drawn as it grows
   std::int64_t budget_pixels = kNoLimit;    ///< Budget: sprite texels per frame, ≥ 0; likewise
+  std::int64_t budget_chunks = kNoLimit;    ///< Budget: 32×32 chunks of sprites per frame, ≥ 0; likewise
+  double budget_ms = kNoLimitMs;  ///< Budget: modelled render time per frame on talisman-1996, ≥ 0; likewise
+  double min_resolution = 0.125;  ///< Budget: (0, 1]; how far the resolution of sprites may be lowered to fit
+                                  ///< a budget of pixels, chunks or time (regulator/resolution.h); 1: never;
+                                  ///< raising it keeps sprites sharp and draws them less often
+  Prediction predict = Prediction::Known;  ///< Lookahead: what is known ahead; Linear draws more often, since
+                                           ///< it errs where the motion bends
   double cutoff_px = 0.004;  ///< Budget: ≥ 0; a layer whose benefit (regulator/budget.h) is not above it is
                              ///< never drawn again; the default is 1/1000 of a typical error of 4 px [LS97
                              ///< 6]; more leaves resources unspent
@@ -107,6 +127,8 @@ struct LayerDecision {
   int depicts_frame = -1;  ///< the frame at whose instant the sprite was drawn; ahead of the frame it is
                            ///< shown in only with Lookahead and Oracle; -1 if nothing is shown or not known
   layers::dvec3 shown_color{1, 1, 1};  ///< multiplier of the sprite's colour, 0 … 1; 1 for a fresh sprite
+  double resolution = 1;   ///< of the sprite shown, relative to what the layer's author asks for
+  bool short_of_area = false;  ///< deferred for want of pixels or chunks
 };
 
 struct FramePlan {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "regulator/policies.h"
+#include "regulator/resolution.h"
 
 namespace talisman::regulator {
 
@@ -61,7 +62,7 @@ bool has_sound_fit(const LayerAssessment& layer) {
 }
 
 std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& options) {
-  if (layer.identical) return {};
+  if (nothing_to_gain(layer)) return {};
   if (!(options.geometric_px > 0)) return "changed, geometric threshold 0 px";
   std::string violation = first_violation(layer, options);
   if (violation.empty() && due_by_minimum_rate(layer))
@@ -74,7 +75,7 @@ std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& o
 /// regulator of [LS97 6]. A threshold of 0 px reuses only what would be drawn identically, so that the
 /// pictures equal `reference`.
 LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options) {
-  if (layer.identical) return reuse(layer, "unchanged");
+  if (nothing_to_gain(layer)) return reuse(layer, "unchanged");
   std::string violation = violation_of(layer, options);
   if (violation.empty())
     return reuse(layer,

@@ -9,6 +9,13 @@
 /// when f comes: the same states, placement, fit, fiducials and thresholds. So the run that is promised is
 /// the run that comes true. The instants are confined to `lookahead_frames` (or are all of the sequence);
 /// how long a sprite will last is judged to the sequence's end.
+///
+/// With Prediction::Linear the frames ahead are those of layers/predict.h, made from the frame at hand and
+/// the one before, and a sprite's life is judged 2 N frames ahead. The sprite is drawn as of the *expected*
+/// instant, so what it shows may never come true. Therefore it is judged, here for the frame at hand and by
+/// `step` for every later one, by the state that was really drawn against the state that really came: a frame
+/// that it does not serve is drawn as of now. So the bound of the displayed error holds whatever was
+/// expected; a wrong expectation costs renders, not error.
 
 #include "regulator/schedule.h"
 #include "sequences/step.h"

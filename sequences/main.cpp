@@ -50,6 +50,16 @@ void add_run_options(CLI::App& command, CommandLine& line) {
                      "policy budget: triangles per frame; only first appearances may exceed it");
   command.add_option("--budget-pixels", line.budget_pixels,
                      "policy budget: sprite texels per frame, likewise");
+  command.add_option("--budget-chunks", line.budget_chunks,
+                     "policy budget: 32x32 chunks of sprites per frame, likewise");
+  command.add_option("--budget-ms", line.budget_ms,
+                     "policy budget: modelled render time per frame on talisman-1996, likewise");
+  command.add_option("--min-resolution", line.min_resolution,
+                     "policy budget: least resolution of sprites that must fit, (0, 1]; 1: never lowered");
+  command.add_flag("--budget-gap", line.budget_gap,
+                   "policy budget: also report the best choice of each frame, and what greedy misses");
+  command.add_option("--predict", line.predict,
+                     "policy lookahead: frames ahead are known, or linear: extrapolated from the last two");
   command.add_option("--cutoff-px", line.cutoff_px,
                      "policy budget: benefit up to which a layer is not drawn again, pixels");
   command.add_option("--warp", line.warp,

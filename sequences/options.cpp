@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <glm/trigonometric.hpp>
+#include "regulator/budget.h"
 
 namespace talisman::sequences {
 
@@ -61,6 +62,17 @@ std::pair<int, int> frame_range_from(const std::string& text, int frames) {
   return range;
 }
 
+/// Only Lookahead looks at frames that it could be wrong about: the oracle is a floor because it knows them.
+void apply_prediction(const CommandLine& line, regulator::RegulatorOptions& options) {
+  if (line.predict.empty()) return;
+  const auto prediction = regulator::prediction_from_name(line.predict);
+  if (!prediction) throw InputError("--predict is '" + line.predict + "', must be one of known, linear");
+  if (*prediction != regulator::Prediction::Known && options.policy != regulator::Policy::Lookahead)
+    throw InputError("--predict is '" + line.predict + "', but --policy is '" +
+                     std::string(regulator::name(options.policy)) + "', must be lookahead");
+  options.predict = *prediction;
+}
+
 void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& options) {
   if (!line.policy.empty()) {
     const auto policy = regulator::policy_from_name(line.policy);
@@ -83,10 +95,18 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (line.lookahead) options.lookahead_frames = *line.lookahead;
   if (line.budget_polygons) options.budget_polygons = *line.budget_polygons;
   if (line.budget_pixels) options.budget_pixels = *line.budget_pixels;
+  if (line.budget_chunks) options.budget_chunks = *line.budget_chunks;
+  if (line.budget_ms) options.budget_ms = *line.budget_ms;
+  if (line.min_resolution) options.min_resolution = *line.min_resolution;
   if (line.cutoff_px) options.cutoff_px = *line.cutoff_px;
-  if (options.policy == regulator::Policy::Budget && options.budget_polygons == regulator::kNoLimit &&
-      options.budget_pixels == regulator::kNoLimit)
-    throw InputError("--policy is 'budget', must come with --budget-polygons, --budget-pixels or both");
+  apply_prediction(line, options);
+  if (options.policy == regulator::Policy::Budget && !regulator::is_limited(options))
+    throw InputError(
+        "--policy is 'budget', must come with --budget-polygons, --budget-pixels, --budget-chunks or "
+        "--budget-ms");
+  if (line.budget_gap && options.policy != regulator::Policy::Budget)
+    throw InputError("--budget-gap compares choices within a budget, but --policy is '" +
+                     std::string(regulator::name(options.policy)) + "', must be budget");
   if (const std::string defect = regulator::first_defect(options); !defect.empty()) throw InputError(defect);
 }
 
@@ -153,6 +173,7 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
   settings.compression = compression_from(line, sequence, settings.regulator.policy);
   settings.fps = sequence.fps;
   settings.frames = sequence.frames;
+  settings.budget_gap = line.budget_gap;
 
   RunOptions& options = run.options;
   options.plan_only = plan_only;

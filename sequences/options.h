@@ -18,13 +18,14 @@ struct CommandLine {
   std::string out;     ///< empty: out/<name>, for plans out/<name>-plan
   std::string frames;  ///< "A-B", "A" or empty: all; inclusive
   std::string size;    ///< "WxH"
-  std::string policy, warp, bound, cycles, shading, format = "png", progress = "auto";
-  std::optional<double> geometric_px, cutoff_px, expected_reuse, resolution;
+  std::string policy, predict, warp, bound, cycles, shading, format = "png", progress = "auto";
+  std::optional<double> geometric_px, cutoff_px, budget_ms, min_resolution, expected_reuse, resolution;
   std::optional<double> photometric, light_angle_deg, turned_px;
   std::string color_warp;  ///< "on", "off"
   std::optional<int> hold, lookahead;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says
-  std::optional<std::int64_t> budget_polygons, budget_pixels;
+  std::optional<std::int64_t> budget_polygons, budget_pixels, budget_chunks;
+  bool budget_gap = false;
   int threads = 0;  ///< 0: all cores
   bool video = false, separate = false, overlay = false, quality = false, resume = false;
 };

@@ -190,6 +190,7 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
   line.plan_ms = report.times.plan_ms;
   if (report.order.sorted)
     line.visibility = {report.order.counters, report.order.merged_parts, report.order.sort_ms};
+  line.budget_gap = report.budget_gap;
   if (report.picture.pixels.empty()) return line;
   line.frame_hash = hash_of(report.picture);
   line.pixels_filled = report.render.pixels_filled;
@@ -219,6 +220,11 @@ std::string json_of(const FrameLine& line) {
     json[f.name] = drawn || f.field == &FrameLine::plan_ms ? Json(line.*f.field) : Json(nullptr);
   if (line.compression) json["compression"] = compression_json(*line.compression);
   json["visibility"] = line.visibility ? json_of(*line.visibility) : Json(nullptr);
+  if (line.budget_gap)
+    json["budget_gap"] = {{"greedy_px", line.budget_gap->greedy_px},
+                          {"optimal_px", line.budget_gap->optimal_px},
+                          {"gap", line.budget_gap->gap()},
+                          {"exact", line.budget_gap->exact}};
   if (line.quality)
     json["quality"] = {{"total", json_of(line.quality->total)},
                        {"reuse", json_of(line.quality->reuse)},
@@ -240,6 +246,10 @@ std::optional<FrameLine> frame_line_from_json(const std::string& text) try {
   for (const auto& f : kTimes) read(f.name, line.*f.field);
   if (json.contains("compression")) line.compression = compression_from_json(json["compression"]);
   if (!json.at("visibility").is_null()) line.visibility = visibility_from(json["visibility"]);
+  if (json.contains("budget_gap")) {
+    const Json& gap = json["budget_gap"];
+    line.budget_gap = regulator::BudgetGap{gap.at("greedy_px"), gap.at("optimal_px"), gap.at("exact")};
+  }
   if (json.contains("quality"))
     line.quality =
         FrameQuality{quality_from(json["quality"].at("total")), quality_from(json["quality"].at("reuse")),
@@ -263,6 +273,7 @@ std::string json_of(const Pipeline& pipeline, const FrameReport& report, const r
       {"warp", json_of(d.shown_warp)},
       {"geometric_px", d.shown_geometric_px},
       {"color", json_of(d.shown_color)},
+      {"resolution", d.resolution},
       {"depicts_frame", d.depicts_frame >= 0 ? Json(d.depicts_frame) : Json(nullptr)},
       {"fiducials", report.assessments[d.layer].has_sprite && report.assessments[d.layer].in_view
                         ? json_of(report.assessments[d.layer])
@@ -322,6 +333,7 @@ void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport
     if (d.action == regulator::Action::Drop) continue;
     LayerSummary& layer = summary.layers[d.layer];
     ++layer.frames_shown;
+    layer.sum_resolution += d.resolution;
     layer.sum_geometric_px += d.shown_geometric_px;
     layer.max_geometric_px = std::max(layer.max_geometric_px, d.shown_geometric_px);
     if (d.action != regulator::Action::Rerender) continue;
@@ -367,6 +379,20 @@ double Summary::total(double FrameLine::*field) const {
   double sum = 0;
   for (const FrameLine& line : frames) sum += line.*field;
   return sum;
+}
+
+GapSummary Summary::budget_gap() const {
+  GapSummary gap;
+  for (const FrameLine& line : frames) {
+    if (!line.budget_gap) continue;
+    ++gap.frames;
+    if (!line.budget_gap->exact) continue;  // nothing is known of it
+    ++gap.exact_frames;
+    gap.mean += line.budget_gap->gap();
+    gap.max = std::max(gap.max, line.budget_gap->gap());
+  }
+  if (gap.exact_frames > 0) gap.mean /= gap.exact_frames;
+  return gap;
 }
 
 double Summary::planning_us_per_layer_and_frame() const {

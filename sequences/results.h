@@ -55,6 +55,7 @@ struct FrameLine {
   std::optional<CompressionReport> compression;
   std::optional<VisibilityLine> visibility;  ///< empty: the groups alone gave the order
   std::optional<FrameQuality> quality;
+  std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
 };
 
 FrameLine line_of(const Pipeline& pipeline, const FrameReport& report);
@@ -81,12 +82,21 @@ struct LayerSummary {
   double sum_geometric_px = 0;  ///< over the frames in which it was shown
   double max_geometric_px = 0;
   layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
+  double sum_resolution = 0;      ///< over the frames in which it was shown
   double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
   /// The share of frames in which it was drawn anew, alone or in an aggregate.
   double drawn_rate(int frames) const {
     return frames > 0 ? static_cast<double>(renders + merged_renders) / frames : 0;
   }
   double mean_geometric_px() const { return frames_shown > 0 ? sum_geometric_px / frames_shown : 0; }
+  double mean_resolution() const { return frames_shown > 0 ? sum_resolution / frames_shown : 1; }
+};
+
+/// How far the greedy choice was from the best one, over the frames in which that was computed.
+struct GapSummary {
+  int frames = 0;
+  int exact_frames = 0;  ///< of them, the best choice was proved
+  double mean = 0, max = 0;
 };
 
 /// The whole run.
@@ -106,6 +116,7 @@ struct Summary {
   double cost_weighted_update_rate() const;  ///< weighted by polygons
   std::int64_t total(std::int64_t FrameLine::*field) const;
   double total(double FrameLine::*field) const;
+  GapSummary budget_gap() const;
   double planning_us_per_layer_and_frame() const;  ///< plan time over layers × frames
 };
 

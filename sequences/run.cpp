@@ -2,6 +2,7 @@
 #include "sequences/run.h"
 
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -50,7 +51,11 @@ Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& 
           {"geometric_px", r.geometric_px},
           {"hold_frames", r.hold_frames},
           {"lookahead", {r.lookahead_frames, s.frames}},
-          {"budget", {r.budget_polygons, r.budget_pixels, r.cutoff_px}},
+          {"predict", regulator::name(r.predict)},
+          {"budget",
+           {r.budget_polygons, r.budget_pixels, r.budget_chunks,
+            std::isfinite(r.budget_ms) ? Json(r.budget_ms) : Json(nullptr), r.cutoff_px, r.min_resolution}},
+          {"budget_gap", s.budget_gap},
           {"sampling", {r.magnification, r.minification, r.anisotropy}},
           {"uncovered_px", r.uncovered_px},
           {"warp", warp::name(s.curve)},

@@ -113,6 +113,11 @@ regulator::RegulatorOptions read_regulator(YamlMap map) {
   map.read("lookahead_frames", options.lookahead_frames, 0, kMaxFrames);
   read_budget(map, "budget_polygons", options.budget_polygons);
   read_budget(map, "budget_pixels", options.budget_pixels);
+  read_budget(map, "budget_chunks", options.budget_chunks);
+  map.read("budget_ms", options.budget_ms, kNotNegative);
+  map.read("min_resolution", options.min_resolution, {0, 1, true});
+  if (const YamlValue* predict = map.find("predict"))
+    options.predict = regulator::kAllPredictions[predict->choice({"known", "linear"})];
   map.read("cutoff_px", options.cutoff_px, kNotNegative);
   map.read("geometric_px", options.geometric_px, kNotNegative);
   read_threshold(map, "magnification", options.magnification, {1, 1e6});

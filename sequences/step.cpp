@@ -54,6 +54,16 @@ LayerAssessment assess(const Pipeline& pipeline, PipelineState& state, const Lay
   return not_shown;
 }
 
+/// How far the greedy choice of this frame was from the best one, if the policy makes one.
+std::optional<regulator::BudgetGap> gap_of(const Pipeline& pipeline, const FrameReport& report) {
+  const regulator::RegulatorOptions& options = pipeline.settings.regulator;
+  if (options.policy != regulator::Policy::Budget) return std::nullopt;
+  constexpr std::size_t kMostStates = 20'000;  // some 20 ms, then the frame counts as not proved
+  return regulator::budget_gap(regulator::candidates_of(report.assessments, options),
+                               regulator::left_after_first_appearances(report.assessments, options),
+                               kMostStates);
+}
+
 /// Chooses the instant as of which the layer is drawn, and completes the decision by how that sprite is shown
 /// now. Returns the instant.
 int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
@@ -61,6 +71,7 @@ int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
   const regulator::FrameRun run = choose_draw_instant(pipeline, state, decision.layer, frame);
   decision.reason += "; rendered as of frame " + std::to_string(run.instant) + ", serves " +
                      std::to_string(run.first) + "-" + std::to_string(run.last);
+  if (predicts(pipeline)) decision.reason += " if the motion goes on";
   if (run.instant == frame) return frame;
   const LayerAssessment shown =
       assess_sprite(pipeline, states_at(pipeline, state, run.instant)[decision.layer],
@@ -81,11 +92,23 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
       const int instant =
           looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
       memory = {states_at(pipeline, state, instant)[decision.layer],
+<<<<<<< HEAD
                 placement_at(pipeline, state, decision.layer, instant), report.frame, instant, false};
       const Layer& layer = pipeline.layers.layers[decision.layer];
       decision.cost = cost_of(layer, memory.placement.size_px);
       state.shade_plan.add_render(pipeline, layer, state.captured.at(instant).shadow_maps, report.shade);
+=======
+                placement_at(pipeline, state, decision.layer, instant),
+                report.frame,
+                instant,
+                false,
+                decision.resolution,
+                predicts(pipeline),
+                0};
+      decision.cost = cost_of(pipeline.layers.layers[decision.layer], memory.placement.size_px);
+>>>>>>> budget
     }
+    memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
     decision.depicts_frame = memory.depicts_frame;
   }
 }
@@ -94,7 +117,12 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
 std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineState& state,
                                        const FrameReport& report) {
   std::vector<ShownSprite> shown;
+<<<<<<< HEAD
   for (const int layer : report.order.back_to_front) {
+=======
+  shown.reserve(order.size());
+  for (const int layer : order) {
+>>>>>>> budget
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
@@ -110,11 +138,12 @@ std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineS
 /// Draws the sprites that this frame shows and the store does not hold yet.
 void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
                           const chunker::PreparedScene& prepared, FrameReport& report) {
-  std::map<int, SceneFrame> others;  // instants other than now, as of which sprites are drawn
+  std::map<std::pair<int, int>, SceneFrame> others;  // instants other than now; by when they were expected
   for (const ShownSprite& sprite : report.shown) {
     LayerMemory& memory = state.memory[sprite.layer];
     if (memory.drawn) continue;
     const int instant = memory.depicts_frame;
+<<<<<<< HEAD
     if (instant != report.frame && others.count(instant) == 0)
       others.emplace(instant, pipeline.scene.at(time_of(pipeline, instant)));
     chunker::RenderResult result =
@@ -126,6 +155,16 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
                       state.sprites, is_late ? nullptr : &*report.compression);
     else
       state.sprites.put(sprite.layer, std::move(result.sprite));
+=======
+    const std::pair key{memory.predicted ? memory.frame_rendered : instant, instant};
+    const bool as_of_now = key == std::pair{report.frame, report.frame};
+    if (!as_of_now && others.count(key) == 0)
+      others.emplace(key, scene_expected(pipeline, key.first, instant));
+    chunker::RenderResult result = chunker::render(
+        prepared, as_of_now ? now : others.at(key), pipeline.layers.layers[sprite.layer].parts,
+        pipeline.settings.view.display_px, memory.placement, pipeline.settings.render);
+    state.sprites.put(sprite.layer, std::move(result.sprite));
+>>>>>>> budget
     memory.drawn = true;
     if (is_late) {
       ++report.late_renders;  // its counters belong to the frame for which it was planned
@@ -223,17 +262,31 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
 
   // Decide: no pixel is touched up to and including the plan.
   const Stopwatch plan_watch;
+<<<<<<< HEAD
   if (authored.settings.regulator.policy != regulator::Policy::Oracle) forget_states_before(state, frame);
   report.order = order_layers(authored, state, frame);  // may merge layers into aggregates
   const Pipeline& pipeline = with_aggregates(authored, state);
   report.render_by_layer.resize(pipeline.layers.layers.size());
+=======
+  begin_frame(pipeline, state, frame);
+  const std::vector<LayerState>& states = states_at(pipeline, state, frame);
+  const std::vector<int> order = order_layers(pipeline, states);
+  report.assessments.reserve(pipeline.layers.layers.size());
+>>>>>>> budget
   for (const Layer& layer : pipeline.layers.layers) {
     report.assessments.push_back(assess(pipeline, state, layer, report));
     report.layers_assessed += report.assessments.back().in_view && report.assessments.back().has_sprite;
   }
+  if (pipeline.settings.regulator.policy == regulator::Policy::Budget)
+    fit_resolutions(pipeline, state, frame, report.assessments);
   report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
   double bookkeeping_ms = plan_watch.ms();
+<<<<<<< HEAD
   report.pixels_reference = reference_pixels(pipeline, states_at(pipeline, state, frame), report.order);
+=======
+  report.pixels_reference = reference_pixels(pipeline, states);
+  if (pipeline.settings.budget_gap) report.budget_gap = gap_of(pipeline, report);
+>>>>>>> budget
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);
   explain_order(pipeline, report);

@@ -23,6 +23,7 @@
 #include "layers/polyhedron.h"
 #include "layers/sprite_transform.h"
 #include "layers/state.h"
+#include "regulator/budget.h"
 #include "regulator/plan.h"
 #include "sequences/sprite_compression.h"
 #include "sequences/aggregates.h"
@@ -46,6 +47,8 @@ struct Settings {
   double fps = 24;
   int frames = 0;  ///< length of the sequence, however few of its frames are asked for; needed by the
                    ///< policies that look ahead (Lookahead, Oracle), whose runs it ends
+  bool budget_gap = false;  ///< Budget: also compute the best choice of each frame (regulator/budget.h);
+                            ///< costs up to some ms a frame, and changes no decision
 };
 
 /// What does not change during a run. Keeps references.
@@ -67,6 +70,9 @@ struct LayerMemory {
   int frame_rendered = -1;  ///< when the work was done
   int depicts_frame = -1;   ///< as of which instant `then` is; later (or earlier) with Lookahead and Oracle
   bool drawn = false;       ///< the sprite store holds that picture (false: planned only)
+  double resolution = 1;    ///< of the sprite, relative to what the layer's author asks for
+  bool predicted = false;   ///< `then` was extrapolated in frame_rendered, it is not the scene's own motion
+  int frames_short_of_area = 0;  ///< frames in a row in which it was deferred for want of pixels or chunks
 };
 
 /// What is known of one frame of the motion: the states of all layers, and where their sprites would lie as
@@ -76,6 +82,12 @@ struct CapturedFrame {
   std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
   int generation = -1;  ///< OrderMemory::generation: aggregates that exist since then are not captured yet
   std::vector<ShadowMapKey> shadow_maps;  ///< by light; empty where no shadow is called for
+};
+
+/// The last two frames of the motion, as far as a regulator that predicts knows it.
+struct MotionKnown {
+  int frame = 0;
+  layers::SceneFrame before, now;  ///< `before` is `now` at frame 0
 };
 
 /// All that survives a frame.
@@ -88,6 +100,9 @@ struct PipelineState {
   ShadePlan shade_plan;
   ShadowMapStore shadow_maps;
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
+  int now = 0;                            ///< the frame that is planned: what lies ahead may be a prediction
+  std::optional<MotionKnown> motion;      ///< what predictions are made from; empty unless they are made
+  std::optional<regulator::RegulatorOptions> planned_with;  ///< `captured` was judged under these options
 };
 
 struct StageTimes {
@@ -119,11 +134,15 @@ struct FrameReport {
   std::int64_t sprite_bytes = 0;                 ///< in the store after this frame
   ShadeCounters shade;                           ///< passes behind shadows and reflections, as planned
   int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
+  std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   StageTimes times;
   chunker::Frame picture;  ///< empty when only planned
 };
 
-/// Plans frame `frame` (frames must come in order from 0) and, if `prepared` is given, draws it.
+/// Plans frame `frame` and, if `prepared` is given, draws it. Frames come in order from 0; a frame may be
+/// repeated, and (with policies that do not look ahead) frames may run backwards. The same `state` may be
+/// carried on under other settings: sprites and what is known of them stay, what was planned ahead is planned
+/// anew.
 FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared);
 

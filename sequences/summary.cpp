@@ -78,6 +78,7 @@ Json layers_json(const Summary& s) {
                     {"update_rate", layer.update_rate(frames)},
                     {"mean_geometric_px", layer.mean_geometric_px()},
                     {"max_geometric_px", layer.max_geometric_px},
+                    {"mean_resolution", layer.mean_resolution()},
                     {"sprite_px", {layer.sprite_px.x, layer.sprite_px.y}}});
   return json;
 }
@@ -213,6 +214,9 @@ std::string json_of(const Summary& s) {
     json["compression"] = compression_json(total_compression(s));
     json["compression"]["quality"] = *s.compression_quality;
   }
+  if (const GapSummary gap = s.budget_gap(); gap.frames > 0)
+    json["budget_gap"] = {
+        {"mean", gap.mean}, {"max", gap.max}, {"frames", gap.frames}, {"exact_frames", gap.exact_frames}};
   if (has_quality(s)) {
     json["quality"] = json_of(mean_quality(s, &FrameQuality::total));
     json["quality_of_reuse"] = json_of(mean_quality(s, &FrameQuality::reuse));
@@ -240,6 +244,11 @@ std::string table_of(const Summary& s) {
     text += format(
         "  modelled          %.2f ms a frame on talisman-1996\n",
         s.frames.empty() ? 0 : s.total(&FrameLine::modelled_ms) / static_cast<double>(s.frames.size()));
+  if (const GapSummary gap = s.budget_gap(); gap.frames > 0)
+    text += format(
+        "  greedy choice     misses %.2f %% of the best choice's benefit in the mean, %.1f %% at most\n"
+        "                    (the best proved in %d of %d frames)\n",
+        100 * gap.mean, 100 * gap.max, gap.exact_frames, gap.frames);
   text += format("  planning          %.2f us per layer and frame\n", s.planning_us_per_layer_and_frame());
   if (has_compression(s)) text += compression_row(s);
   text += time_row(s);

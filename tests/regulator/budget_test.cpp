@@ -2,12 +2,15 @@
 // The budget regulator against hand-made frames, and its greedy choice against the best one.
 #include "regulator/budget.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "regulator/profile.h"
 
 namespace talisman::regulator {
 namespace {
@@ -127,7 +130,81 @@ TEST(PolicyBudget, PixelsAreABudgetOfTheirOwn) {
   const auto decisions =
       decide({layer_of(0, 8, 10, 5000), layer_of(1, 1, 10, 900)}, budget_of(kNoLimit, 1000));
   EXPECT_THAT(rendered(decisions), ElementsAre(1));
-  EXPECT_THAT(decisions[0].reason, HasSubstr("pixels 5000 > 1000 left of 1000"));
+  EXPECT_EQ(
+      decisions[0].reason,
+      "deferred: budget, dearer than the whole budget of 1000 pixels, needs 5000; benefit 8 > 0.004 px");
+  EXPECT_TRUE(decisions[0].short_of_area);
+}
+
+TEST(PolicyBudget, ChunksAreABudgetOfTheirOwn) {
+  RegulatorOptions options = budget_of(kNoLimit);
+  options.budget_chunks = 2;
+  const auto decisions = decide({layer_of(0, 8, 10), layer_of(1, 7, 10), layer_of(2, 6, 10)}, options);
+  EXPECT_THAT(rendered(decisions), ElementsAre(0, 1));
+  EXPECT_THAT(decisions[2].reason, HasSubstr("chunks 1 > 0 left of 2"));
+  EXPECT_TRUE(decisions[2].short_of_area);
+}
+
+TEST(PolicyBudget, LayerDearerThanAllPolygonsSaysSoAndIsNotShortOfArea) {
+  // Its resolution does not help it, so it must not be lowered.
+  const auto decisions = decide({layer_of(0, 8, 5000)}, budget_of(3000));
+  EXPECT_EQ(
+      decisions[0].reason,
+      "deferred: budget, dearer than the whole budget of 3000 polygons, needs 5000; benefit 8 > 0.004 px");
+  EXPECT_FALSE(decisions[0].short_of_area);
+}
+
+TEST(PolicyBudget, AllLayersEqualGoToTheLowerIdsInAnyOrderOfTheAssessments) {
+  std::vector<LayerAssessment> layers;
+  for (const int id : {4, 1, 3, 0, 2}) layers.push_back(layer_of(id, 5, 100, 100));
+  for (int budget = 0; budget <= 5; ++budget) {
+    std::vector<int> expected(budget), chosen = rendered(decide(layers, budget_of(100 * budget)));
+    for (int i = 0; i < budget; ++i) expected[i] = i;
+    std::sort(chosen.begin(), chosen.end());
+    EXPECT_EQ(chosen, expected);
+  }
+}
+
+TEST(PolicyBudget, BudgetBelowTheCheapestLayerDrawsNothing) {
+  EXPECT_THAT(rendered(decide({layer_of(0, 9, 100), layer_of(1, 9, 120)}, budget_of(99))), ElementsAre());
+  EXPECT_THAT(rendered(decide({layer_of(0, 9, 100), layer_of(1, 9, 120)}, budget_of(100))), ElementsAre(0));
+}
+
+TEST(FrameBudget, TimeLimitsPolygonsAndPixelsSoThatTheModelledRenderFits) {
+  RegulatorOptions options;
+  options.budget_ms = 2;
+  const Budget budget = frame_budget(options);
+  EXPECT_EQ(budget.polygons, 3000);
+  EXPECT_EQ(budget.pixels, 80'000);
+  EXPECT_EQ(budget.chunks, kNoLimit);
+  EXPECT_LE(modelled_time(talisman_1996(), budget.polygons, budget.pixels, 0).render_ms, 2);
+  EXPECT_GT(modelled_time(talisman_1996(), budget.polygons + 1, 0, 0).render_ms, 2);
+  EXPECT_GT(modelled_time(talisman_1996(), 0, budget.pixels + 1, 0).render_ms, 2);
+  options.budget_polygons = 10;
+  EXPECT_EQ(frame_budget(options).polygons, 10) << "the scarcer of two limits holds";
+  options.budget_ms = 1e300;
+  EXPECT_EQ(frame_budget(options).pixels, kNoLimit);
+  EXPECT_FALSE(is_limited(RegulatorOptions{}));
+}
+
+TEST(PolicyBudget, TimeIsNamedInTheReason) {
+  RegulatorOptions options;
+  options.policy = Policy::Budget;
+  options.budget_ms = 2;
+  const auto decisions = decide({layer_of(0, 8, 2000), layer_of(1, 7, 2000)}, options);
+  EXPECT_THAT(decisions[1].reason, HasSubstr("polygons 2000 > 1000 left of 3000 in 2 ms"));
+}
+
+TEST(RegulatorOptions, BudgetsOutOfRangeAreDefects) {
+  RegulatorOptions options;
+  options.budget_chunks = -1;
+  EXPECT_EQ(first_defect(options), "budget_chunks is -1, must be at least 0");
+  options = {};
+  options.budget_ms = NAN;
+  EXPECT_THAT(first_defect(options), HasSubstr("budget_ms"));
+  options = {};
+  options.min_resolution = 0;
+  EXPECT_EQ(first_defect(options), "min_resolution is 0, must be above 0 and at most 1");
 }
 
 TEST(PolicyBudget, NothingBelowTheCutOffIsDrawnHoweverMuchIsLeft) {
@@ -175,7 +252,7 @@ std::vector<Candidate> random_candidates(std::mt19937& random, int n) {
   std::uniform_int_distribution<std::int64_t> polygons(0, 1000), pixels(0, 50'000);
   std::vector<Candidate> candidates;
   for (int i = 0; i < n; ++i)
-    candidates.push_back({i, benefit(random), {polygons(random), pixels(random), 1, 4096}});
+    candidates.push_back({i, benefit(random), {polygons(random), pixels(random), 1 + i % 20, 4096}});
   return candidates;
 }
 
@@ -188,6 +265,7 @@ double best_by_brute_force(const std::vector<Candidate>& candidates, const Budge
       if ((subset >> i & 1) == 0) continue;
       cost.polygons += candidates[i].cost.polygons;
       cost.pixels += candidates[i].cost.pixels;
+      cost.chunks += candidates[i].cost.chunks;
       benefit += candidates[i].benefit_px;
     }
     if (budget.affords(cost)) best = std::max(best, benefit);
@@ -200,8 +278,8 @@ TEST(OptimalChoice, EqualsExhaustiveSearchWithOneAndTwoBudgets) {
   std::mt19937 random(kSeed);
   for (int trial = 0; trial < 120; ++trial) {
     const auto candidates = random_candidates(random, trial % 12);
-    for (const Budget budget :
-         {Budget{2000, kNoLimit}, Budget{kNoLimit, 90'000}, Budget{2000, 90'000}, Budget{0, 0}, Budget{}}) {
+    for (const Budget budget : {Budget{2000, kNoLimit}, Budget{kNoLimit, 90'000}, Budget{2000, 90'000},
+                                Budget{2500, 120'000, 40}, Budget{0, 0}, Budget{}}) {
       const Choice choice = optimal_choice(candidates, budget);
       ASSERT_TRUE(choice.exact);
       EXPECT_DOUBLE_EQ(choice.benefit_px, best_by_brute_force(candidates, budget))
@@ -211,6 +289,7 @@ TEST(OptimalChoice, EqualsExhaustiveSearchWithOneAndTwoBudgets) {
       for (const int layer : choice.layers) {
         spent.polygons += candidates[layer].cost.polygons;
         spent.pixels += candidates[layer].cost.pixels;
+        spent.chunks += candidates[layer].cost.chunks;
         benefit += candidates[layer].benefit_px;
       }
       EXPECT_TRUE(budget.affords(spent));
@@ -225,6 +304,17 @@ TEST(OptimalChoice, TooManyStatesAreAnsweredByGreedyAndSaySo) {
   const Choice capped = optimal_choice(candidates, {8000, 400'000}, 10);
   EXPECT_FALSE(capped.exact);
   EXPECT_EQ(capped.layers, greedy_choice(candidates, {8000, 400'000}).layers);
+}
+
+TEST(OptimalChoice, HundredLayersAreSolvedWithinTheStatesOfAFrame) {
+  // The bound on what the rest can add is what makes this possible: 2^119 choices, few of them promising.
+  constexpr unsigned kSeed = 119;
+  std::mt19937 random(kSeed);
+  const auto candidates = random_candidates(random, 119);
+  const BudgetGap gap = budget_gap(candidates, {20'000, kNoLimit});
+  EXPECT_TRUE(gap.exact) << "seed " << kSeed;
+  EXPECT_GE(gap.optimal_px, gap.greedy_px);
+  EXPECT_LT(gap.gap(), 0.02);
 }
 
 TEST(GreedyGap, NeverNegativeAndNearlyWholeInTheWorstCase) {

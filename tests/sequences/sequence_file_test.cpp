@@ -90,11 +90,16 @@ TEST(LoadSequence, PoliciesThatLookAheadOrKeepABudgetAreNamedWithTheirNumbers) {
   const std::size_t regulator = lines.size() - 5;
   ASSERT_EQ(lines[regulator].rfind("regulator:", 0), 0u);
   lines[regulator] =
-      "regulator: {policy: budget, budget_polygons: 900, budget_pixels: 0, cutoff_px: 0.5, lookahead_frames: 7}";
+      "regulator: {policy: budget, budget_polygons: 900, budget_pixels: 0, budget_chunks: 8, budget_ms: 2.5, "
+      "min_resolution: 0.5, predict: linear, cutoff_px: 0.5, lookahead_frames: 7}";
   const regulator::RegulatorOptions options = load(folder, lines).regulator;
   EXPECT_EQ(options.policy, regulator::Policy::Budget);
   EXPECT_EQ(options.budget_polygons, 900);
   EXPECT_EQ(options.budget_pixels, 0);
+  EXPECT_EQ(options.budget_chunks, 8);
+  EXPECT_EQ(options.budget_ms, 2.5);
+  EXPECT_EQ(options.min_resolution, 0.5);
+  EXPECT_EQ(options.predict, regulator::Prediction::Linear);
   EXPECT_EQ(options.cutoff_px, 0.5);
   EXPECT_EQ(options.lookahead_frames, 7);
 }

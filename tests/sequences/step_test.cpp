@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/results.h"
+#include "tests/sequences/stage.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {
@@ -18,42 +19,6 @@ namespace {
 
 using regulator::Action;
 using regulator::Policy;
-
-/// A scene with its layers, ready to run.
-struct Stage {
-  layers::Scene scene;
-  layers::LayerSet layers;
-  Settings settings;
-
-  explicit Stage(layers::Scene scene_in) : scene(std::move(scene_in)) {
-    layers = layers::factor(scene, tests::one_layer_per_part(scene));
-    settings.view.display_px = {200, 150};
-  }
-
-  Stage& policy(Policy policy, double geometric_px = 4) {
-    settings.regulator.policy = policy;
-    settings.regulator.geometric_px = geometric_px;
-    return *this;
-  }
-
-  Stage& lookahead(int frames) {
-    settings.regulator.lookahead_frames = frames;
-    return *this;
-  }
-
-  /// The whole sequence: its length is known to the policies that look ahead.
-  std::vector<FrameReport> run(int frames, bool draw) const {
-    Settings of_run = settings;
-    of_run.frames = frames;
-    const Pipeline pipeline(scene, layers, of_run);
-    const chunker::PreparedScene prepared(scene);
-    PipelineState state(pipeline);
-    std::vector<FrameReport> reports;
-    for (int frame = 0; frame < frames; ++frame)
-      reports.push_back(step(pipeline, state, frame, draw ? &prepared : nullptr));
-    return reports;
-  }
-};
 
 std::vector<std::string> hashes_of(const std::vector<FrameReport>& reports) {
   std::vector<std::string> hashes;
@@ -68,13 +33,6 @@ std::vector<std::string> decisions_of(const Stage& stage, const std::vector<Fram
     for (const regulator::LayerDecision& decision : report.plan.decisions)
       lines.push_back(json_of(pipeline, report, decision));
   return lines;
-}
-
-int count(const std::vector<FrameReport>& reports, Action action) {
-  int n = 0;
-  for (const FrameReport& report : reports)
-    for (const regulator::LayerDecision& decision : report.plan.decisions) n += decision.action == action;
-  return n;
 }
 
 constexpr int kFrames = 24;

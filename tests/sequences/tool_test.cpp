@@ -197,6 +197,12 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
   expect_bad_input("render cube.obj --lookahead -1", {"lookahead_frames", "-1", "at least 0"});
   expect_bad_input("render cube.obj --policy budget", {"--policy", "--budget-polygons", "--budget-pixels"});
   expect_bad_input("render cube.obj --budget-polygons -5", {"budget_polygons", "-5", "at least 0"});
+  expect_bad_input("render cube.obj --budget-chunks -5", {"budget_chunks", "-5", "at least 0"});
+  expect_bad_input("render cube.obj --budget-ms nan", {"budget_ms", "at least 0"});
+  expect_bad_input("render cube.obj --min-resolution 2", {"min_resolution", "2", "at most 1"});
+  expect_bad_input("plan cube.obj --budget-gap", {"--budget-gap", "threshold", "must be budget"});
+  expect_bad_input("plan cube.obj --predict crystal", {"--predict", "crystal", "known, linear"});
+  expect_bad_input("plan cube.obj --predict linear --policy oracle", {"--predict", "oracle", "must be lookahead"});
   expect_bad_input("render cube.obj --cutoff-px nan", {"cutoff_px", "at least 0"});
   expect_bad_input("render cube.obj --format gif", {"--format", "gif", "png"});
   expect_bad_input("render cube.obj --format none --video", {"--video"});

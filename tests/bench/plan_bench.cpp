@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+
+/// What does planning cost? 119 moving layers, as many as the barnyard of [LS97] has, 250 frames, all
+/// fiducials, on one thread. Counters:
+///
+///   us_per_layer_frame   plan time over layers × frames, as `talisman plan` reports it
+///   renders              share of layers and frames that are drawn again
+///   share_of_16ms        plan time of a frame over a display frame at 60 Hz
+///
+/// The steps of one frame beside it, per layer: scene evaluation, capture, order.
+
+#include <benchmark/benchmark.h>
+
+#include "layers/layer.h"
+#include "sequences/layer_planning.h"
+#include "tests/support/fleet.h"
+#include "tests/support/scenes.h"
+
+namespace talisman::tests {
+namespace {
+
+constexpr int kLayers = 119, kFrames = 250;
+
+struct Workload {
+  layers::Scene scene = fleet_scene(kLayers, 1997, 8);
+  layers::LayerSet layers = layers::factor(scene, one_layer_per_part(scene));
+  sequences::Settings settings;
+  explicit Workload(regulator::Policy policy) {
+    settings.regulator.policy = policy;
+    settings.regulator.geometric_px = 1;
+    settings.regulator.budget_polygons = kLayers * 12 / 2;
+    settings.regulator.budget_pixels = 300'000;
+    settings.frames = kFrames;
+  }
+};
+
+void Plan(benchmark::State& run, regulator::Policy policy) {
+  const Workload work(policy);
+  const sequences::Pipeline pipeline(work.scene, work.layers, work.settings);
+  double plan_ms = 0;
+  std::int64_t renders = 0, frames = 0;
+  for (auto _ : run) {
+    sequences::PipelineState state(pipeline);
+    for (int frame = 0; frame < kFrames; ++frame, ++frames) {
+      const sequences::FrameReport report = sequences::step(pipeline, state, frame, nullptr);
+      plan_ms += report.times.plan_ms;
+      for (const regulator::LayerDecision& d : report.plan.decisions)
+        renders += d.action == regulator::Action::Rerender;
+    }
+  }
+  const double layer_frames = static_cast<double>(frames) * kLayers;
+  run.counters["us_per_layer_frame"] = 1e3 * plan_ms / layer_frames;
+  run.counters["renders"] = static_cast<double>(renders) / layer_frames;
+  run.counters["share_of_16ms"] = plan_ms / static_cast<double>(frames) / (1e3 / 60);
+}
+BENCHMARK_CAPTURE(Plan, threshold, regulator::Policy::Threshold)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Plan, interpolate, regulator::Policy::Interpolate)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Plan, budget, regulator::Policy::Budget)->Unit(benchmark::kMillisecond);
+
+void SceneAt(benchmark::State& run) {
+  const Workload work(regulator::Policy::Threshold);
+  for (auto _ : run) benchmark::DoNotOptimize(work.scene.at(1.3));
+}
+BENCHMARK(SceneAt)->Unit(benchmark::kMicrosecond);
+
+void CaptureAll(benchmark::State& run) {
+  const Workload work(regulator::Policy::Threshold);
+  const sequences::Pipeline pipeline(work.scene, work.layers, work.settings);
+  const layers::SceneFrame frame = work.scene.at(1.3);
+  for (auto _ : run)
+    for (const layers::Layer& layer : work.layers.layers)
+      benchmark::DoNotOptimize(layers::capture(frame, layer, pipeline.bounds[layer.id], work.settings.view));
+}
+BENCHMARK(CaptureAll)->Unit(benchmark::kMicrosecond);
+
+void Order(benchmark::State& run) {
+  const Workload work(regulator::Policy::Threshold);
+  const sequences::Pipeline pipeline(work.scene, work.layers, work.settings);
+  sequences::PipelineState state(pipeline);
+  std::vector<layers::WorldBounds> bounds;
+  for (const layers::LayerState& s : sequences::states_at(pipeline, state, 31))
+    bounds.push_back(layers::bounds_of(s.world_points));
+  for (auto _ : run) benchmark::DoNotOptimize(layers::back_to_front({0, 0, 0}, work.layers.layers, bounds));
+}
+BENCHMARK(Order)->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+}  // namespace talisman::tests
