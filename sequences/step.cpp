@@ -92,12 +92,6 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
       const int instant =
           looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
       memory = {states_at(pipeline, state, instant)[decision.layer],
-<<<<<<< HEAD
-                placement_at(pipeline, state, decision.layer, instant), report.frame, instant, false};
-      const Layer& layer = pipeline.layers.layers[decision.layer];
-      decision.cost = cost_of(layer, memory.placement.size_px);
-      state.shade_plan.add_render(pipeline, layer, state.captured.at(instant).shadow_maps, report.shade);
-=======
                 placement_at(pipeline, state, decision.layer, instant),
                 report.frame,
                 instant,
@@ -105,8 +99,9 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
                 decision.resolution,
                 predicts(pipeline),
                 0};
-      decision.cost = cost_of(pipeline.layers.layers[decision.layer], memory.placement.size_px);
->>>>>>> budget
+      const Layer& layer = pipeline.layers.layers[decision.layer];
+      decision.cost = cost_of(layer, memory.placement.size_px);
+      state.shade_plan.add_render(pipeline, layer, state.captured.at(instant).shadow_maps, report.shade);
     }
     memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
     decision.depicts_frame = memory.depicts_frame;
@@ -117,12 +112,8 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
 std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineState& state,
                                        const FrameReport& report) {
   std::vector<ShownSprite> shown;
-<<<<<<< HEAD
+  shown.reserve(report.order.back_to_front.size());
   for (const int layer : report.order.back_to_front) {
-=======
-  shown.reserve(order.size());
-  for (const int layer : order) {
->>>>>>> budget
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
@@ -143,11 +134,12 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
     LayerMemory& memory = state.memory[sprite.layer];
     if (memory.drawn) continue;
     const int instant = memory.depicts_frame;
-<<<<<<< HEAD
-    if (instant != report.frame && others.count(instant) == 0)
-      others.emplace(instant, pipeline.scene.at(time_of(pipeline, instant)));
+    const std::pair key{memory.predicted ? memory.frame_rendered : instant, instant};
+    const bool as_of_now = key == std::pair{report.frame, report.frame};
+    if (!as_of_now && others.count(key) == 0)
+      others.emplace(key, scene_expected(pipeline, key.first, instant));
     chunker::RenderResult result =
-        draw_layer(pipeline, state.shadow_maps, prepared, instant != report.frame ? others.at(instant) : now,
+        draw_layer(pipeline, state.shadow_maps, prepared, as_of_now ? now : others.at(key),
                    pipeline.layers.layers[sprite.layer], memory.placement);
     const bool is_late = memory.frame_rendered != report.frame;
     if (pipeline.settings.compression)
@@ -155,16 +147,6 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
                       state.sprites, is_late ? nullptr : &*report.compression);
     else
       state.sprites.put(sprite.layer, std::move(result.sprite));
-=======
-    const std::pair key{memory.predicted ? memory.frame_rendered : instant, instant};
-    const bool as_of_now = key == std::pair{report.frame, report.frame};
-    if (!as_of_now && others.count(key) == 0)
-      others.emplace(key, scene_expected(pipeline, key.first, instant));
-    chunker::RenderResult result = chunker::render(
-        prepared, as_of_now ? now : others.at(key), pipeline.layers.layers[sprite.layer].parts,
-        pipeline.settings.view.display_px, memory.placement, pipeline.settings.render);
-    state.sprites.put(sprite.layer, std::move(result.sprite));
->>>>>>> budget
     memory.drawn = true;
     if (is_late) {
       ++report.late_renders;  // its counters belong to the frame for which it was planned
@@ -262,17 +244,11 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
 
   // Decide: no pixel is touched up to and including the plan.
   const Stopwatch plan_watch;
-<<<<<<< HEAD
-  if (authored.settings.regulator.policy != regulator::Policy::Oracle) forget_states_before(state, frame);
+  begin_frame(authored, state, frame);
   report.order = order_layers(authored, state, frame);  // may merge layers into aggregates
   const Pipeline& pipeline = with_aggregates(authored, state);
   report.render_by_layer.resize(pipeline.layers.layers.size());
-=======
-  begin_frame(pipeline, state, frame);
-  const std::vector<LayerState>& states = states_at(pipeline, state, frame);
-  const std::vector<int> order = order_layers(pipeline, states);
   report.assessments.reserve(pipeline.layers.layers.size());
->>>>>>> budget
   for (const Layer& layer : pipeline.layers.layers) {
     report.assessments.push_back(assess(pipeline, state, layer, report));
     report.layers_assessed += report.assessments.back().in_view && report.assessments.back().has_sprite;
@@ -281,12 +257,8 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
     fit_resolutions(pipeline, state, frame, report.assessments);
   report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
   double bookkeeping_ms = plan_watch.ms();
-<<<<<<< HEAD
   report.pixels_reference = reference_pixels(pipeline, states_at(pipeline, state, frame), report.order);
-=======
-  report.pixels_reference = reference_pixels(pipeline, states);
   if (pipeline.settings.budget_gap) report.budget_gap = gap_of(pipeline, report);
->>>>>>> budget
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);
   explain_order(pipeline, report);
