@@ -116,7 +116,9 @@ class LayerStage {
     }
   }
 
-  void forget_before(int frame) { forget_states_before(state_, frame); }
+  void forget_before(int frame) {
+    state_.captured.erase(state_.captured.begin(), state_.captured.lower_bound(frame));
+  }
 
  private:
   LayerPicture draw(int layer, int instant, const layers::SpritePlacement& placement,

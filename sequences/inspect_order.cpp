@@ -80,7 +80,7 @@ OrderOverTime order_over_time(const Sequence& sequence, const Settings& settings
   PipelineState state(authored);
   OrderOverTime result;
   for (int frame = 0; frame < sequence.frames; ++frame) {
-    forget_states_before(state, frame);
+    begin_frame(authored, state, frame);
     states_at(authored, state, frame);  // the motion is not part of the sort's time
     const FrameOrder order = order_layers(authored, state, frame);
     const Pipeline& pipeline = with_aggregates(authored, state);
