@@ -92,7 +92,8 @@ struct LayerSummary {
   double mean_resolution() const { return frames_shown > 0 ? sum_resolution / frames_shown : 1; }
 };
 
-/// How far the greedy choice was from the best one, over the frames in which that was computed.
+/// How far the greedy choice was from the best one. Mean and largest gap are those of the frames in which the
+/// best one was proved.
 struct GapSummary {
   int frames = 0;
   int exact_frames = 0;  ///< of them, the best choice was proved
