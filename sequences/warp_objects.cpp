@@ -268,8 +268,13 @@ layers::Texture checkers() {
 }
 
 void add_lights(layers::Scene& scene) {
-  layers::Light ambient{"ambient", layers::Light::Kind::Ambient, -1, {}, {0, -1, 0}, vec3(0.25f)};
-  layers::Light sun{"sun", layers::Light::Kind::Directional, -1, {}, {-0.4, -0.7, -0.6}, vec3(0.8f)};
+  layers::Light ambient, sun;
+  ambient.name = "ambient";
+  ambient.kind = layers::Light::Kind::Ambient;
+  ambient.color = vec3(0.25f);
+  sun.name = "sun";
+  sun.direction = {-0.4, -0.7, -0.6};
+  sun.color = vec3(0.8f);
   scene.lights = {ambient, sun};
 }
 
