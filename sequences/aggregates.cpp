@@ -80,7 +80,7 @@ std::vector<layers::Occluder> occluders_in_view(const Pipeline& authored,
   std::vector<layers::Occluder> occluders;
   for (const Layer& layer : authored.layers.layers) {
     const LayerState& state = states[layer.id];
-    if (!state.touches_display) continue;
+    if (!state.touches_display || layer.kind != layers::LayerKind::Geometry) continue;
     occluders.push_back(
         {layer.id, layer.group, layers::convex_bodies(authored.bounds[layer.id], state.world_points)});
   }
