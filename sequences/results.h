@@ -77,8 +77,8 @@ struct LayerSummary {
   double sum_geometric_px = 0;  ///< over the frames in which it was shown
   double max_geometric_px = 0;
   layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
-  int merged_renders = 0;       ///< renders of aggregates in which it took part; not among `renders`
-  bool is_aggregate = false;    ///< counted with its members where rates are averaged
+  int merged_renders = 0;         ///< renders of aggregates in which it took part; not among `renders`
+  bool is_aggregate = false;      ///< counted with its members where rates are averaged
   double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
   /// The share of frames in which it was drawn anew, alone or in an aggregate.
   double drawn_rate(int frames) const {
