@@ -49,7 +49,8 @@ std::string joined_names(std::span<const Layer> layers, std::span<const int> mem
   constexpr std::size_t kAll = 4, kCut = 3;
   std::string name;
   const std::size_t shown = members.size() <= kAll ? members.size() : kCut;
-  for (const int member : members.first(shown)) name.append(name.empty() ? "" : "+").append(layers[member].name);
+  for (const int member : members.first(shown))
+    name.append(name.empty() ? "" : "+").append(layers[member].name);
   if (shown < members.size()) name.append("+").append(std::to_string(members.size() - shown)).append(" more");
   return name;
 }

@@ -77,12 +77,12 @@ struct LayerSummary {
   std::string name;
   int parts = 0, polygons = 0;
   int renders = 0, frames_shown = 0;
-  int merged_renders = 0;       ///< renders of aggregates in which it took part; not among `renders`
-  bool is_aggregate = false;    ///< counted with its members where rates are averaged
   double sum_geometric_px = 0;  ///< over the frames in which it was shown
   double max_geometric_px = 0;
   layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
   double sum_resolution = 0;      ///< over the frames in which it was shown
+  int merged_renders = 0;         ///< renders of aggregates in which it took part; not among `renders`
+  bool is_aggregate = false;      ///< counted with its members where rates are averaged
   double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
   /// The share of frames in which it was drawn anew, alone or in an aggregate.
   double drawn_rate(int frames) const {
