@@ -79,6 +79,8 @@ struct TurnedFaces {
   int count = 0;         ///< faces of the polyhedron that faced away from the eye and face it now
   double px = 0;         ///< square root of the largest area on the display of one of them
   dvec2 where_px{0, 0};  ///< the middle of that face's part on the display
+};
+
 /// How far shadows, highlights and mirrored pictures have run over a surface since it was drawn
 /// (fiducials/shade.h). Already added to Geometric::px of the same report.
 struct ShadeMotion {

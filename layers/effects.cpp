@@ -277,41 +277,40 @@ bool calls_for_visibility_sort(std::span<const Layer> layers) {
   return false;
 }
 
+std::vector<ShadowMapUse> shadow_maps_called_for(const Scene& scene, std::span<const Layer> layers) {
+  std::vector<ShadowMapUse> uses;
+  const std::vector<int> casting = casting_parts(scene, layers);
+  const bool casters_move =
+      std::any_of(casting.begin(), casting.end(), [&](int part) { return moves(scene, scene.parts[part]); });
+  for (std::size_t i = 0; i < scene.lights.size() && !casting.empty(); ++i) {
+    const Light& light = scene.lights[i];
+    if (!light.casts_shadow) continue;
+    ShadowMapUse use{static_cast<int>(i), false, light_of(scene, static_cast<int>(i))};
+    use.drawn_once = !casters_move && (light.node < 0 || !is_animated(scene, light.node));
+    use.why += use.drawn_once ? ": static, drawn once" : ": drawn again when light or casters move";
+    uses.push_back(std::move(use));
+  }
+  return uses;
+}
+
 std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers,
                                            const RunEffects& run) {
   const Context context{scene, layers, run, moving_carriers(scene)};
-  std::vector<ShadowMapUse> shadow_maps_called_for(const Scene& scene, std::span<const Layer> layers) {
-    std::vector<ShadowMapUse> uses;
-    const std::vector<int> casting = casting_parts(scene, layers);
-    const bool casters_move = std::any_of(casting.begin(), casting.end(),
-                                          [&](int part) { return moves(scene, scene.parts[part]); });
-    for (std::size_t i = 0; i < scene.lights.size() && !casting.empty(); ++i) {
-      const Light& light = scene.lights[i];
-      if (!light.casts_shadow) continue;
-      ShadowMapUse use{static_cast<int>(i), false, light_of(scene, static_cast<int>(i))};
-      use.drawn_once = !casters_move && (light.node < 0 || !is_animated(scene, light.node));
-      use.why += use.drawn_once ? ": static, drawn once" : ": drawn again when light or casters move";
-      uses.push_back(std::move(use));
+  std::vector<EffectCall> table;
+  for (const Effect effect : kAllEffects) {
+    EffectCall call{effect, false, {}, {}};
+    for (const Layer& layer : layers) {
+      std::string why = call_of(context, layer, effect);
+      if (why.empty()) continue;
+      if (!call.called) call.why = std::move(why);
+      call.called = true;
+      call.layers.push_back(layer.id);
     }
-    return uses;
+    if (!call.called) call.why = why_not(scene, layers, effect);
+    if (call.called && effect == Effect::ShadowMap) call.why = why_of_shadow_maps(scene, layers);
+    table.push_back(std::move(call));
   }
-
-  std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const Layer> layers) {
-    std::vector<EffectCall> table;
-    for (const Effect effect : kAllEffects) {
-      EffectCall call{effect, false, {}, {}};
-      for (const Layer& layer : layers) {
-        std::string why = call_of(context, layer, effect);
-        if (why.empty()) continue;
-        if (!call.called) call.why = std::move(why);
-        call.called = true;
-        call.layers.push_back(layer.id);
-      }
-      if (!call.called) call.why = why_not(scene, layers, effect);
-      if (call.called && effect == Effect::ShadowMap) call.why = why_of_shadow_maps(scene, layers);
-      table.push_back(std::move(call));
-    }
-    return table;
-  }
+  return table;
+}
 
 }  // namespace talisman::layers

@@ -249,7 +249,7 @@ void add_mirrored_polygons(std::vector<Layer>& layers) {
 
 bool is_lit(const Scene& scene, const Part& part) {
   const Material* material = material_of(scene, part);
-  return !scene.lights.empty() && (!material || !material->unlit);
+  return !material || !material->unlit;
 }
 
 bool casts_shadow(const Scene& scene, const Part& part) {

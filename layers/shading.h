@@ -30,7 +30,7 @@
 
 namespace talisman::layers {
 
-/// Does the part receive light at all?
+/// Does the part answer to light at all? (Whether there is any is not asked.)
 bool is_lit(const Scene& scene, const Part& part);
 /// Is it drawn into shadow maps: lit and opaque? (A depth map knows no half-transparent surfaces.)
 bool casts_shadow(const Scene& scene, const Part& part);

@@ -186,6 +186,7 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
   line.shadow_maps_reused = report.shade.shadow_maps_reused;
   line.reflections_drawn = report.shade.reflections_drawn;
   line.polygons_rendered += report.shade.shadow_polygons;
+  line.polygons_reference += report.shade.shadow_polygons;  // drawn for the layers of this frame
   line.pixels_reference = report.pixels_reference;
   line.plan_ms = report.times.plan_ms;
   if (report.order.sorted)
