@@ -42,7 +42,8 @@ RectD display_rect(const SpritePlacement& placement) {
 Report assess(const LayerState& then, const LayerState& now, const SpritePlacement& placement,
               const Correspondences& matched, const warp::FitResult& fitted) {
   Report report{geometric_of(now, matched, fitted), sampling_over(fitted.warp, display_rect(placement)),
-                visibility_of(then, now, placement, fitted.warp), shade_motion(then, now)};
+                visibility_of(then, now, placement, fitted.warp)};
+  report.shade = shade_motion(then, now);
   if (report.shade.px > report.geometric.px) report.geometric.where_px = report.shade.where_px;
   report.geometric.px = std::fmin(report.geometric.px + report.shade.px, warp::kHugePx);
   return report;

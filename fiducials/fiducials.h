@@ -97,7 +97,7 @@ struct Report {
   Visibility visibility;
   Photometric photometric{};  ///< not by `assess`: see fiducials/photometric.h
   TurnedFaces turned{};       ///< not by `assess`: see fiducials/turned_faces.h
-  ShadeMotion shade;
+  ShadeMotion shade{};
 };
 
 /// Singular values (largest first) of the 2×2 matrix | a b ; c d |, closed form [Blinn 96]:

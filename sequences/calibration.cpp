@@ -32,14 +32,19 @@ constexpr std::array kFiducials = {
                        [](const LayerAssessment& a) {
                          return a.fiducials.visibility.computed ? a.fiducials.visibility.uncovered_px : NAN;
                        }},
+    CalibratedFiducial{"photometric", "photometric fiducial: share of white, after the colour warp", "%",
+                       [](const LayerAssessment& a) {
+                         return a.fiducials.photometric.computed ? 100 * a.fiducials.photometric.color : NAN;
+                       }},
 };
 
 /// The layer's sprite alone. Over black and over white: their mean is the picture over grey, since `over` is
 /// linear, and their difference is what the layer lets through.
 LayerPicture picture_of(const chunker::Sprite& sprite, const layers::dmat3& screen_from_sprite,
-                        layers::ivec2 display_px) {
+                        const layers::dvec3& color, layers::ivec2 display_px) {
   chunker::PlacedSprite placed;
   placed.sprite = &sprite;
+  placed.color_multiplier = layers::vec3(color);
   placed.screen_from_sprite = screen_from_sprite;
   const chunker::Frame black = chunker::composite({&placed, 1}, display_px, {0, 0, 0}).frame;
   const chunker::Frame white = chunker::composite({&placed, 1}, display_px, {1, 1, 1}).frame;
@@ -104,9 +109,10 @@ class LayerStage {
       const layers::SpritePlacement old_placement = placement_at(pipeline_, state_, layer, frame - age);
       const LayerAssessment assessment = assess_sprite(pipeline_, then, old_placement, now, age);
       if (old_placement.empty() || !(assessment.identical || regulator::has_sound_fit(assessment))) continue;
-      if (!fresh) fresh = draw(layer, frame, placement, layers::dmat3(1.0));
+      if (!fresh) fresh = draw(layer, frame, placement, layers::dmat3(1.0), layers::dvec3(1.0));
       const LayerPicture old_one =
-          draw(layer, frame - age, old_placement, assessment.fitted.warp.now_from_then);
+          draw(layer, frame - age, old_placement, assessment.fitted.warp.now_from_then,
+               assessment.fiducials.photometric.multiplier);
       const LayerDifference difference = difference_of(old_one, *fresh);
       if (difference.pixels == 0) continue;
       samples.push_back(
@@ -122,17 +128,18 @@ class LayerStage {
 
  private:
   LayerPicture draw(int layer, int instant, const layers::SpritePlacement& placement,
-                    const layers::dmat3& warp) const {
-    const layers::ivec2 display_px = pipeline_.settings.view.display_px;
-    const chunker::RenderResult drawn = chunker::render(
-        prepared_, pipeline_.scene.at(time_of(pipeline_, instant)), pipeline_.layers.layers[layer].parts,
-        display_px, placement, pipeline_.settings.render);
-    return picture_of(drawn.sprite, warp * layers::to_mat3(placement.screen_from_sprite), display_px);
+                    const layers::dmat3& warp, const layers::dvec3& color) {
+    const chunker::RenderResult drawn =
+        draw_layer(pipeline_, shadow_maps_, prepared_, pipeline_.scene.at(time_of(pipeline_, instant)),
+                   pipeline_.layers.layers[layer], placement);
+    return picture_of(drawn.sprite, warp * layers::to_mat3(placement.screen_from_sprite), color,
+                      pipeline_.settings.view.display_px);
   }
 
   Pipeline pipeline_;
   PipelineState state_;
   chunker::PreparedScene prepared_;
+  ShadowMapStore shadow_maps_;
 };
 
 /// All numbers of one fiducial, and what they are set against.

@@ -19,6 +19,7 @@ struct Prediction {
 };
 constexpr std::array kPredictions = {
     Prediction{"known motion", [](RegulatorOptions&) {}},
+    Prediction{"predicted linearly", [](RegulatorOptions& o) { o.predict = regulator::Prediction::Linear; }},
 };
 
 Summary plan_of(const Sequence& sequence, Settings settings, const RegulatorOptions& options,
@@ -30,8 +31,9 @@ Summary plan_of(const Sequence& sequence, Settings settings, const RegulatorOpti
   for (int frame = 0; frame <= frames.last; ++frame) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
     if (frame < frames.first) continue;
-    add_decisions(summary, report, state);
-    summary.frames.push_back(line_of(pipeline, report));
+    const Pipeline& grown = with_aggregates(pipeline, state);
+    add_decisions(summary, grown, report, state);
+    summary.frames.push_back(line_of(grown, report));
   }
   return summary;
 }

@@ -43,8 +43,9 @@ class SettingRun {
   }
 
   void count() {
-    add_decisions(summary_, report_, state_);
-    summary_.frames.push_back(line_of(pipeline_, report_));
+    const Pipeline& pipeline = with_aggregates(pipeline_, state_);
+    add_decisions(summary_, pipeline, report_, state_);
+    summary_.frames.push_back(line_of(pipeline, report_));
     for (const regulator::LayerDecision& decision : report_.plan.decisions) chunks_ += decision.cost.chunks;
   }
 
@@ -156,8 +157,10 @@ double reference_polygons_per_frame(const Sequence& sequence, const Settings& se
   const Pipeline pipeline(*sequence.scene, sequence.layers, reference);
   PipelineState state(pipeline);
   std::int64_t polygons = 0;
-  for (int frame = frames.first; frame <= frames.last; ++frame)
-    polygons += line_of(pipeline, step(pipeline, state, frame, nullptr)).polygons_reference;
+  for (int frame = frames.first; frame <= frames.last; ++frame) {
+    const FrameReport report = step(pipeline, state, frame, nullptr);
+    polygons += line_of(with_aggregates(pipeline, state), report).polygons_reference;
+  }
   return static_cast<double>(polygons) / (frames.last - frames.first + 1);
 }
 
