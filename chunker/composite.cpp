@@ -178,14 +178,15 @@ void blend_pixels(const Source& source, const PixelTaps& taps, const Multiplier&
 /// Composites one band; its buffers are used again by every tile.
 class BandCompositor {
  public:
-  BandCompositor(std::span<const Visible> sprites, PackedPixel background, Frame& frame)
+  /// Without a background the sprites are laid over what `frame` shows.
+  BandCompositor(std::span<const Visible> sprites, std::optional<PackedPixel> background, Frame& frame)
       : sprites_(sprites), background_(background), frame_(frame) {}
 
   CompositeCounters run(int band) {
     collect(band);
     Tile tile{0, band * kBandLines, {frame_.width, frame_.height}, tile_.data()};
     for (; tile.x < frame_.width; tile.x += kRunPixels) {
-      tile_.fill(background_);
+      begin(tile);
       for (Touching& touching : touching_) {
         if (tile.x + kRunPixels > touching.columns.first && tile.x < touching.columns.last)
           lay(touching, tile);
@@ -266,22 +267,49 @@ class BandCompositor {
     }
   }
 
-  void keep(const Tile& tile) {
-    for (int row = 0; row < tile.lines(); ++row) {
-      Linear16* line = frame_.pixels.data() + static_cast<std::size_t>(tile.y + row) * frame_.width + tile.x;
-      std::memcpy(static_cast<void*>(line), tile.pixels + row * kRunPixels,
+  Linear16* line_of_frame(const Tile& tile, int row) {
+    return frame_.pixels.data() + static_cast<std::size_t>(tile.y + row) * frame_.width + tile.x;
+  }
+
+  void begin(const Tile& tile) {
+    tile_.fill(background_.value_or(0));
+    if (background_) return;
+    for (int row = 0; row < tile.lines(); ++row)
+      std::memcpy(tile.pixels + row * kRunPixels, line_of_frame(tile, row),
                   tile.columns() * sizeof(Linear16));
-    }
+  }
+
+  void keep(const Tile& tile) {
+    for (int row = 0; row < tile.lines(); ++row)
+      std::memcpy(static_cast<void*>(line_of_frame(tile, row)), tile.pixels + row * kRunPixels,
+                  tile.columns() * sizeof(Linear16));
   }
 
   std::span<const Visible> sprites_;
-  PackedPixel background_;
+  std::optional<PackedPixel> background_;
   Frame& frame_;
   std::vector<Touching> touching_;
   CompositeCounters counters_;
   Window window_;
   alignas(64) std::array<PackedPixel, kBandLines * kRunPixels> tile_;
 };
+
+/// All bands of `frame`, whose pixels are there.
+CompositeCounters composite_bands(Frame& frame, std::span<const PlacedSprite> sprites,
+                                  std::optional<PackedPixel> background) {
+  const std::vector<Visible> visible = visible_sprites(sprites);
+  const int bands = (frame.height + kBandLines - 1) / kBandLines;
+  std::vector<CompositeCounters> counters(bands);
+  tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
+    for (int band = range.begin(); band != range.end(); ++band) {
+      const auto compositor = std::make_unique<BandCompositor>(visible, background, frame);
+      counters[band] = compositor->run(band);
+    }
+  });
+  CompositeCounters sum;
+  for (const CompositeCounters& c : counters) sum += c;
+  return sum;
+}
 
 }  // namespace
 
@@ -296,7 +324,6 @@ CompositeCounters composite_into(Frame& frame, std::span<const PlacedSprite> spr
                                  layers::vec3 background) {
   TALISMAN_CHECK_GE(display_px.x, 0);
   TALISMAN_CHECK_GE(display_px.y, 0);
-  const std::vector<Visible> visible = visible_sprites(sprites);
   const Linear16 below = fixed_background(background);
   PackedPixel packed_background;
   std::memcpy(&packed_background, &below, sizeof below);
@@ -304,17 +331,12 @@ CompositeCounters composite_into(Frame& frame, std::span<const PlacedSprite> spr
   frame.width = display_px.x;
   frame.height = display_px.y;
   frame.pixels.resize(static_cast<std::size_t>(display_px.x) * display_px.y);
-  const int bands = (display_px.y + kBandLines - 1) / kBandLines;
-  std::vector<CompositeCounters> counters(bands);
-  tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
-    for (int band = range.begin(); band != range.end(); ++band) {
-      const auto compositor = std::make_unique<BandCompositor>(visible, packed_background, frame);
-      counters[band] = compositor->run(band);
-    }
-  });
-  CompositeCounters sum;
-  for (const CompositeCounters& c : counters) sum += c;
-  return sum;
+  return composite_bands(frame, sprites, packed_background);
+}
+
+CompositeCounters composite_onto(Frame& frame, std::span<const PlacedSprite> sprites) {
+  TALISMAN_CHECK_EQ(frame.pixels.size(), static_cast<std::size_t>(frame.width) * frame.height);
+  return composite_bands(frame, sprites, std::nullopt);
 }
 
 CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_px, layers::vec3 background) {

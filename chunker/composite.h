@@ -29,6 +29,7 @@ struct PlacedSprite {
 struct Frame {
   int width = 0, height = 0;
   std::vector<Linear16> pixels;  ///< row by row
+  bool operator==(const Frame&) const = default;
 };
 
 struct CompositeCounters {
@@ -53,6 +54,10 @@ CompositeResult composite(std::span<const PlacedSprite> sprites, layers::ivec2 d
 /// sequence of frames.
 CompositeCounters composite_into(Frame& frame, std::span<const PlacedSprite> sprites,
                                  layers::ivec2 display_px, layers::vec3 background);
+
+/// The same over the picture that `frame` already holds, which may be clear or translucent: alpha is
+/// composited like the colours. A stack that is composited in parts equals the whole, byte for byte.
+CompositeCounters composite_onto(Frame& frame, std::span<const PlacedSprite> sprites);
 
 /// sRGB bytes, 3 per pixel.
 std::vector<std::uint8_t> srgb_bytes(const Frame& frame);

@@ -102,15 +102,24 @@ int count_registers(const std::vector<CompositeExpression::Node>& nodes) {
   return nodes.empty() ? 0 : std::max(1, need.back());
 }
 
-std::string write(const std::vector<CompositeExpression::Node>& nodes, int i, bool outermost) {
+/// `name` gives the text of a layer id.
+template <typename Name>
+std::string write(const std::vector<CompositeExpression::Node>& nodes, int i, bool outermost,
+                  const Name& name) {
   const auto& n = nodes[i];
-  if (n.op == Operator::Layer) return std::to_string(n.layer);
-  const char* name = n.op == Operator::Over   ? " over "
-                     : n.op == Operator::Atop ? " atop "
-                     : n.op == Operator::Out  ? " out "
-                                              : " plus ";
-  const std::string text = write(nodes, n.left, false) + name + write(nodes, n.right, false);
+  if (n.op == Operator::Layer) return name(n.layer);
+  const char* op = n.op == Operator::Over   ? " over "
+                   : n.op == Operator::Atop ? " atop "
+                   : n.op == Operator::Out  ? " out "
+                                            : " plus ";
+  const std::string text = write(nodes, n.left, false, name) + op + write(nodes, n.right, false, name);
   return outermost ? text : "(" + text + ")";
+}
+
+template <typename Name>
+std::string write(const CompositeExpression& expression, const Name& name) {
+  if (expression.nodes.empty()) return "";
+  return write(expression.nodes, static_cast<int>(expression.nodes.size()) - 1, true, name);
 }
 
 }  // namespace
@@ -134,8 +143,11 @@ CompositeExpression occlusion_expression(const MergedComponent& component, Expre
 }
 
 std::string to_string(const CompositeExpression& expression) {
-  if (expression.nodes.empty()) return "";
-  return write(expression.nodes, static_cast<int>(expression.nodes.size()) - 1, true);
+  return write(expression, [](int layer) { return std::to_string(layer); });
+}
+
+std::string to_string(const CompositeExpression& expression, std::span<const Layer> layers) {
+  return write(expression, [&](int layer) { return layers[layer].name; });
 }
 
 }  // namespace talisman::layers

@@ -67,5 +67,7 @@ CompositeExpression occlusion_expression(const MergedComponent& component,
 
 /// "((2 atop 0) over 1) over 2", with the layers' ids.
 std::string to_string(const CompositeExpression& expression);
+/// The same with the names of `layers`, which are by id.
+std::string to_string(const CompositeExpression& expression, std::span<const Layer> layers);
 
 }  // namespace talisman::layers

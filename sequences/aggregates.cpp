@@ -11,6 +11,7 @@
 #include "layers/check.h"
 #include "layers/shading.h"
 #include "sequences/layer_planning.h"
+#include "sequences/resolved_cycles.h"
 
 namespace talisman::sequences {
 
@@ -134,8 +135,13 @@ std::vector<int> order_of_cycle(const MergedComponent& component, const layers::
   return order;
 }
 
-/// Turns the sorter's answer into layers with sprites: a component becomes its aggregate, or stays apart in
-/// some order.
+void take_from_merged(const MergedComponent& component, layers::VisibilityCounters& counters) {
+  --counters.merged_components;
+  counters.merged_layers -= static_cast<int>(component.layers.size());
+}
+
+/// Turns the sorter's answer into layers with sprites: a component becomes its aggregate, or stays apart with
+/// an expression or in some order.
 void place_groups(const Pipeline& authored, PipelineState& state, const std::vector<LayerState>& states,
                   const layers::dvec3& eye, const layers::VisibilityOrder& visibility, FrameOrder& order) {
   auto merged = visibility.merged.begin();
@@ -146,14 +152,19 @@ void place_groups(const Pipeline& authored, PipelineState& state, const std::vec
     }
     TALISMAN_CHECK(merged != visibility.merged.end() && merged->layers == group);
     const MergedComponent& component = *merged++;
-    if (authored.settings.cycles == Cycles::Keep) {
+    Resolution resolution = resolve_cycle(authored, state.order.merged_into, component);
+    if (resolution.cycle || authored.settings.cycles == Cycles::Keep) {
       const std::vector<int> kept = order_of_cycle(component, eye, states);
       order.back_to_front.insert(order.back_to_front.end(), kept.begin(), kept.end());
+      if (!resolution.cycle) continue;
+      take_from_merged(component, order.counters);
+      order.resolved.push_back(std::move(*resolution.cycle));
       continue;
     }
     const int id = aggregate_id(authored, state, group);
     order.back_to_front.push_back(id);
-    order.mergers.push_back({id, why_merged(authored, component)});
+    const std::string why_not = resolution.why_not.empty() ? "" : "; " + resolution.why_not;
+    order.mergers.push_back({id, why_merged(authored, component) + why_not});
     for (const int member : group) {
       order.merged_into[member] = id;
       order.merged_parts += static_cast<int>(authored.layers.layers[member].parts.size());
@@ -261,6 +272,8 @@ void explain_order(const Pipeline& pipeline, FrameReport& report) {
           "merged into " + pipeline.layers.layers[into].name + ": " + report.order.merger(into)->why;
     else if (from >= 0 && decision.action != regulator::Action::Drop)
       decision.reason = "split from " + pipeline.layers.layers[from].name + ": " + decision.reason;
+    if (const ResolvedCycle* cycle = report.order.resolved_with(layer.id))
+      decision.reason += "; " + why_resolved(pipeline, *cycle, layer.id);
   }
 }
 

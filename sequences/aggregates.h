@@ -11,6 +11,8 @@
 /// sprite of an aggregate is kept as well, and dropped when the aggregate has been gone for
 /// kKeepAggregate_frames.
 ///
+/// With the extended compositor most cycles are not merged (sequences/resolved_cycles.h).
+///
 /// Policies that look ahead (Lookahead, Oracle) judge every layer, aggregates included, as if the grouping of
 /// the frame that is planned lasted: they do not foresee merging and splitting.
 

@@ -56,10 +56,24 @@ void add_merger(OrderOverTime& result, int frame, const Pipeline& pipeline, cons
     result.merged.push_back({frame, frame, layer.name, names_of(pipeline, layer.members), merger.why});
 }
 
+/// The same layers may be related otherwise in the next frame: then the expression is another.
+void add_resolved(OrderOverTime& result, int frame, const Pipeline& pipeline, const ResolvedCycle& cycle) {
+  const std::vector<std::string> members = names_of(pipeline, cycle.layers);
+  const std::string why = to_string(cycle.expression, pipeline.layers.layers);
+  const auto lasts = [&](const MergedRun& run) {
+    return run.members == members && run.why == why && run.last == frame - 1;
+  };
+  const auto run = std::find_if(result.resolved.begin(), result.resolved.end(), lasts);
+  if (run != result.resolved.end())
+    run->last = frame;
+  else
+    result.resolved.push_back({frame, frame, "", members, why});
+}
+
 void add_counters(OrderOverTime& result, const FrameOrder& order) {
   ++result.frames;
   result.frames_sorted += order.sorted;
-  result.frames_with_cycles += order.counters.merged_components > 0;
+  result.frames_with_cycles += order.counters.merged_components > 0 || !order.resolved.empty();
   for (const Counter& c : kCounters) result.sum.*c.field += order.counters.*c.field;
   result.merged_parts += order.merged_parts;
   if (!order.sorted) return;
@@ -86,6 +100,7 @@ OrderOverTime order_over_time(const Sequence& sequence, const Settings& settings
     const Pipeline& pipeline = with_aggregates(authored, state);
     add_order(result, frame, names_of(pipeline, order.back_to_front));
     for (const Merger& merger : order.mergers) add_merger(result, frame, pipeline, merger);
+    for (const ResolvedCycle& cycle : order.resolved) add_resolved(result, frame, pipeline, cycle);
     add_counters(result, order);
   }
   return result;
@@ -102,6 +117,9 @@ std::string order_text(const Sequence& sequence, const OrderOverTime& order) {
   for (const MergedRun& run : order.merged)
     text += line("  %5d-%-5d  ", run.first, run.last) + joined(run.members) + ": " + run.why + "\n";
   if (order.merged.empty()) text += "  never\n";
+  if (!order.resolved.empty()) text += "\n  apart        in a cycle, by which expression\n";
+  for (const MergedRun& run : order.resolved)
+    text += line("  %5d-%-5d  ", run.first, run.last) + joined(run.members) + ": " + run.why + "\n";
   text += line("\n  sorted in %d frames, with cycles in %d; %.3f ms a frame on average, %.3f ms at most\n  ",
                order.frames_sorted, order.frames_with_cycles,
                order.frames_sorted > 0 ? order.sort_ms / order.frames_sorted : 0, order.slowest_sort_ms);
@@ -110,7 +128,7 @@ std::string order_text(const Sequence& sequence, const OrderOverTime& order) {
 }
 
 std::string order_json(const Sequence& sequence, const OrderOverTime& order) {
-  Json runs = Json::array(), merged = Json::array(), counters = Json::object();
+  Json runs = Json::array(), merged = Json::array(), resolved = Json::array(), counters = Json::object();
   for (const OrderRun& run : order.runs)
     runs.push_back({{"first", run.first}, {"last", run.last}, {"back_to_front", run.back_to_front}});
   for (const MergedRun& run : order.merged)
@@ -119,6 +137,9 @@ std::string order_json(const Sequence& sequence, const OrderOverTime& order) {
                       {"name", run.name},
                       {"members", run.members},
                       {"why", run.why}});
+  for (const MergedRun& run : order.resolved)
+    resolved.push_back(
+        {{"first", run.first}, {"last", run.last}, {"members", run.members}, {"expression", run.why}});
   for (const Counter& c : kCounters) counters[c.name] = order.sum.*c.field;
   counters["merged_parts"] = order.merged_parts;
   const Json json = {{"schema", "talisman.order/1"},
@@ -128,6 +149,7 @@ std::string order_json(const Sequence& sequence, const OrderOverTime& order) {
                      {"frames_with_cycles", order.frames_with_cycles},
                      {"orders", runs},
                      {"merged", merged},
+                     {"resolved", resolved},
                      {"counters", counters},
                      {"sort_ms", order.sort_ms},
                      {"slowest_sort_ms", order.slowest_sort_ms}};

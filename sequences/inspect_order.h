@@ -31,6 +31,8 @@ struct MergedRun {
 struct OrderOverTime {
   std::vector<OrderRun> runs;     ///< in the order of time; they cover every frame
   std::vector<MergedRun> merged;  ///< by first frame
+  std::vector<MergedRun>
+      resolved;  ///< the same of cycles that kept their sprites: no name, `why` the expression
   int frames = 0, frames_sorted = 0, frames_with_cycles = 0;
   layers::VisibilityCounters sum;  ///< over all frames
   std::int64_t merged_parts = 0;   ///< over all frames

@@ -69,6 +69,10 @@ void add_run_options(CLI::App& command, CommandLine& line) {
   command.add_option(
       "--cycles", line.cycles,
       "layers that occlude each other in a cycle: merge (into one sprite) or keep (may be wrong)");
+  command.add_option(
+      "--compositor", line.compositor,
+      "talisman: over only; extended: also out and plus with two image registers, so that layers "
+      "that go round are not merged unless two of them meet");
   command.add_option("--expected-reuse", line.expected_reuse,
                      "frames for which clipped sprites are enlarged");
   command.add_option("--threads", line.threads,
@@ -163,6 +167,7 @@ struct Commands {
     inspect->add_flag("--order", order,
                       "the visibility order over time, what was merged and why, and what the sort cost");
     inspect->add_option("--cycles", line.cycles, "with --order: merge or keep");
+    inspect->add_option("--compositor", line.compositor, "with --order: talisman or extended");
     inspect->callback([this] { exit_code = inspect_sequence(line, inspected, json, profile, order); });
 
     CLI::App* diff_command = app.add_subcommand("diff", "image error of two frames or folders of frames");
@@ -184,7 +189,8 @@ struct Commands {
     warps_command->callback([this] { exit_code = run_warps(warps, std::cout); });
 
     CLI::App* accuracy_command = app.add_subcommand("accuracy", "what accuracy costs in time");
-    accuracy_command->add_flag("--solvers", accuracy.solvers, "every solver of warps: time, error, stability");
+    accuracy_command->add_flag("--solvers", accuracy.solvers,
+                               "every solver of warps: time, error, stability");
     accuracy_command->add_option("--regulator", accuracy.regulator.sequence,
                                  "SEQUENCE or MODEL: every policy, cost and time against error and popping; "
                                  "fiducials against image error");

@@ -160,6 +160,11 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
           ? sequence.cycles
           : choice("--cycles", line.cycles,
                    std::array{std::pair{"merge", Cycles::Merge}, std::pair{"keep", Cycles::Keep}});
+  settings.compositor = line.compositor.empty()
+                            ? sequence.compositor
+                            : choice("--compositor", line.compositor,
+                                     std::array{std::pair{"talisman", Compositor::Talisman},
+                                                std::pair{"extended", Compositor::Extended}});
   settings.extents = sequence.extents;
   if (line.expected_reuse)
     settings.extents.expected_reuse_frames = positive("--expected-reuse", *line.expected_reuse, 1e4);

@@ -138,9 +138,19 @@ constexpr SortField kSort[] = {{"layers", &layers::VisibilityCounters::layers},
                                {"merged_components", &layers::VisibilityCounters::merged_components},
                                {"merged_layers", &layers::VisibilityCounters::merged_layers}};
 
+struct ResolvedField {
+  const char* name;
+  int ResolvedCounters::*field;
+};
+constexpr ResolvedField kResolved[] = {{"resolved_components", &ResolvedCounters::components},
+                                       {"resolved_layers", &ResolvedCounters::layers},
+                                       {"expression_registers", &ResolvedCounters::registers},
+                                       {"expression_reads", &ResolvedCounters::reads}};
+
 Json json_of(const VisibilityLine& line) {
   Json json = Json::object();
   for (const SortField& f : kSort) json[f.name] = line.counters.*f.field;
+  for (const ResolvedField& f : kResolved) json[f.name] = line.resolved.*f.field;
   json["merged_parts"] = line.merged_parts;
   json["sort_ms"] = line.sort_ms;
   return json;
@@ -149,6 +159,7 @@ Json json_of(const VisibilityLine& line) {
 VisibilityLine visibility_from(const Json& json) {
   VisibilityLine line;
   for (const SortField& f : kSort) json.at(f.name).get_to(line.counters.*f.field);
+  for (const ResolvedField& f : kResolved) json.at(f.name).get_to(line.resolved.*f.field);
   json.at("merged_parts").get_to(line.merged_parts);
   json.at("sort_ms").get_to(line.sort_ms);
   return line;
@@ -190,7 +201,8 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
   line.pixels_reference = report.pixels_reference;
   line.plan_ms = report.times.plan_ms;
   if (report.order.sorted)
-    line.visibility = {report.order.counters, report.order.merged_parts, report.order.sort_ms};
+    line.visibility = {report.order.counters, report.order.merged_parts, report.order.sort_ms,
+                       report.order.resolved_counters()};
   line.budget_gap = report.budget_gap;
   if (report.picture.pixels.empty()) return line;
   line.frame_hash = hash_of(report.picture);
@@ -312,6 +324,7 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   summary.sequence = sequence;
   summary.policy = regulator::name(settings.regulator.policy);
   summary.warp = warp::name(settings.curve);
+  if (settings.compositor == Compositor::Extended) summary.compositor = "extended";
   summary.display_px = settings.view.display_px;
   if (settings.compression) summary.compression_quality = settings.compression->quality;
   summary.effects = layers::effects_called_for(pipeline.scene, pipeline.layers.layers,

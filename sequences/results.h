@@ -32,7 +32,8 @@ struct FrameQuality {
 struct VisibilityLine {
   layers::VisibilityCounters counters;
   int merged_parts = 0;
-  double sort_ms = 0;  ///< part of plan_ms
+  double sort_ms = 0;         ///< part of plan_ms
+  ResolvedCounters resolved;  ///< zero unless the compositor is extended
 };
 
 /// One frame in numbers: what a line of frames.jsonl holds.
@@ -102,7 +103,7 @@ struct GapSummary {
 
 /// The whole run.
 struct Summary {
-  std::string sequence, policy, warp;
+  std::string sequence, policy, warp, compositor = "talisman";
   layers::ivec2 display_px{0, 0};
   std::optional<int> compression_quality;
   bool planned_only = false;
@@ -118,6 +119,7 @@ struct Summary {
   std::int64_t total(std::int64_t FrameLine::*field) const;
   double total(double FrameLine::*field) const;
   GapSummary budget_gap() const;
+  ResolvedCounters resolved() const;               ///< added up over the frames; registers: at most
   double planning_us_per_layer_and_frame() const;  ///< plan time over layers × frames
 };
 

@@ -61,6 +61,7 @@ Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& 
           {"warp", warp::name(s.curve)},
           {"bound", static_cast<int>(s.bound)},
           {"cycles", s.cycles == Cycles::Merge ? "merge" : "keep"},
+          {"compositor", s.compositor == Compositor::Talisman ? "talisman" : "extended"},
           {"extents", {s.extents.expected_reuse_frames, s.extents.max_growth, s.view.clip_margin}},
           {"placement",
            {s.placement.slab_directions, s.placement.min_rotation_gain, s.placement.resolution_scale}},

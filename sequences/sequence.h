@@ -30,6 +30,7 @@ struct Sequence {
   layers::LayerSet layers;
   std::vector<layers::ExplicitPair> explicit_order;
   Cycles cycles = Cycles::Merge;
+  Compositor compositor = Compositor::Talisman;
   layers::BoundKind bound = layers::BoundKind::Box8;
   layers::ExtentOptions extents;
   layers::PlacementOptions placement;

@@ -176,6 +176,8 @@ void read_settings(YamlMap& map, Sequence& sequence) {
   if (const YamlValue* v = map.find("compression")) sequence.compression = read_compression(v->map());
   if (const YamlValue* v = map.find("cycles"))
     sequence.cycles = static_cast<Cycles>(v->choice({"merge", "keep"}));
+  if (const YamlValue* v = map.find("compositor"))
+    sequence.compositor = static_cast<Compositor>(v->choice({"talisman", "extended"}));
   if (const YamlValue* v = map.find("clip_margin")) sequence.clip_margin = v->number({0, 1});
   if (const YamlValue* v = map.find("bound"))
     sequence.bound = static_cast<layers::BoundKind>(v->choice({"box8", "dop14", "dop26"}));

@@ -7,6 +7,7 @@
 #include "layers/check.h"
 #include "layers/effects.h"
 #include "sequences/draw_instant.h"
+#include "sequences/extended_composite.h"
 #include "sequences/layer_planning.h"
 #include "sequences/light_planning.h"
 
@@ -157,19 +158,28 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
   }
 }
 
-chunker::CompositeResult composite_shown(const Pipeline& pipeline, const std::vector<ShownSprite>& shown,
+chunker::PlacedSprite placed_of(const ShownSprite& sprite, const chunker::SpriteStore& sprites) {
+  chunker::PlacedSprite placed;
+  placed.sprite = sprites.find(sprite.layer);
+  placed.screen_from_sprite = sprite.screen_from_sprite;
+  placed.alpha_multiplier = sprite.multipliers.alpha;
+  placed.color_multiplier = sprite.multipliers.color;
+  return placed;
+}
+
+chunker::CompositeResult composite_shown(const Pipeline& pipeline, const FrameReport& report,
                                          const chunker::SpriteStore& sprites) {
-  std::vector<chunker::PlacedSprite> placed;
-  placed.reserve(shown.size());
-  for (const ShownSprite& sprite : shown) {
-    chunker::PlacedSprite p;
-    p.sprite = sprites.find(sprite.layer);
-    p.screen_from_sprite = sprite.screen_from_sprite;
-    p.alpha_multiplier = sprite.multipliers.alpha;
-    p.color_multiplier = sprite.multipliers.color;
-    placed.push_back(p);
+  const layers::ivec2 display_px = pipeline.settings.view.display_px;
+  if (!report.order.resolved.empty()) {
+    std::vector<LayerSprite> placed;
+    for (const ShownSprite& sprite : report.shown)
+      placed.push_back({sprite.layer, placed_of(sprite, sprites)});
+    return composite_extended(placed, report.order, display_px, pipeline.scene.background);
   }
-  return chunker::composite(placed, pipeline.settings.view.display_px, pipeline.scene.background);
+  std::vector<chunker::PlacedSprite> placed;
+  placed.reserve(report.shown.size());
+  for (const ShownSprite& sprite : report.shown) placed.push_back(placed_of(sprite, sprites));
+  return chunker::composite(placed, display_px, pipeline.scene.background);
 }
 
 chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& report,
@@ -206,7 +216,7 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
     draw_missing_sprites(pipeline, state, now, prepared, report);
     report.times.render_ms = render_watch.ms();
     const Stopwatch composite_watch;
-    result = composite_shown(pipeline, report.shown, state.sprites);
+    result = composite_shown(pipeline, report, state.sprites);
     report.times.composite_ms = composite_watch.ms();
     if (report.compression) report.compression->cache = chunks_read(pipeline, report, state.compressed);
   }

@@ -44,6 +44,7 @@ struct Settings {
   std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are
   std::vector<layers::ExplicitPair> explicit_order;        ///< of layer ids; before geometry
   Cycles cycles = Cycles::Merge;
+  Compositor compositor = Compositor::Talisman;  ///< Extended: sequences/resolved_cycles.h
   double fps = 24;
   int frames = 0;  ///< length of the sequence, however few of its frames are asked for; needed by the
                    ///< policies that look ahead (Lookahead, Oracle), whose runs it ends

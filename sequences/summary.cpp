@@ -100,7 +100,7 @@ Json visibility_json(const Summary& s) {
     if (!line.visibility) continue;
     const layers::VisibilityCounters& c = line.visibility->counters;
     ++frames;
-    cyclic_frames += c.merged_components > 0;
+    cyclic_frames += c.merged_components + line.visibility->resolved.components > 0;
     sum.queries += c.queries, sum.pairs += c.pairs, sum.exact_tests += c.exact_tests, sum.swaps += c.swaps;
     sum.merged_layers += c.merged_layers;
     merged_parts += line.visibility->merged_parts;
@@ -108,6 +108,7 @@ Json visibility_json(const Summary& s) {
     slowest_ms = std::max(slowest_ms, line.visibility->sort_ms);
   }
   if (frames == 0) return nullptr;
+  const ResolvedCounters resolved = s.resolved();
   return {{"frames_sorted", frames},
           {"frames_with_cycles", cyclic_frames},
           {"queries", sum.queries},
@@ -116,6 +117,10 @@ Json visibility_json(const Summary& s) {
           {"swaps", sum.swaps},
           {"merged_layers", sum.merged_layers},
           {"merged_parts", merged_parts},
+          {"resolved_components", resolved.components},
+          {"resolved_layers", resolved.layers},
+          {"expression_registers", resolved.registers},
+          {"expression_reads", resolved.reads},
           {"sort_ms", sort_ms},
           {"slowest_sort_ms", slowest_ms}};
 }
@@ -164,9 +169,10 @@ bool has_compression(const Summary& s) { return s.compression_quality && !s.plan
 
 std::string compression_row(const Summary& s) {
   const CompressionReport c = total_compression(s);
-  return format("  compression       %.1f : 1 at quality %d, PSNR %.1f dB; cache %.1f %% hits, %s bytes read\n",
-                c.ratio(), *s.compression_quality, c.error.color_psnr_db(), 100 * c.cache.hit_rate(),
-                magnitude(static_cast<double>(c.cache.bytes_read)).c_str());
+  return format(
+      "  compression       %.1f : 1 at quality %d, PSNR %.1f dB; cache %.1f %% hits, %s bytes read\n",
+      c.ratio(), *s.compression_quality, c.error.color_psnr_db(), 100 * c.cache.hit_rate(),
+      magnitude(static_cast<double>(c.cache.bytes_read)).c_str());
 }
 
 std::string time_row(const Summary& s) {
@@ -178,6 +184,19 @@ std::string time_row(const Summary& s) {
 
 }  // namespace
 
+ResolvedCounters Summary::resolved() const {
+  ResolvedCounters sum;
+  for (const FrameLine& line : frames) {
+    if (!line.visibility) continue;
+    const ResolvedCounters& r = line.visibility->resolved;
+    sum.components += r.components;
+    sum.layers += r.layers;
+    sum.reads += r.reads;
+    sum.registers = std::max(sum.registers, r.registers);
+  }
+  return sum;
+}
+
 std::string json_of(const Summary& s) {
   const double frames = static_cast<double>(s.frames.size());
   const auto measured = [&s](auto value) { return s.planned_only ? Json(nullptr) : Json(value); };
@@ -185,6 +204,7 @@ std::string json_of(const Summary& s) {
                {"sequence", s.sequence},
                {"policy", s.policy},
                {"warp", s.warp},
+               {"compositor", s.compositor},
                {"frames", s.frames.size()},
                {"first_frame", s.frames.empty() ? 0 : s.frames.front().frame},
                {"display_px", {s.display_px.x, s.display_px.y}},
@@ -249,6 +269,10 @@ std::string table_of(const Summary& s) {
         "  greedy choice     misses %.2f %% of the best choice's benefit in the mean, %.1f %% at most\n"
         "                    (the best proved in %d of %d frames)\n",
         100 * gap.mean, 100 * gap.max, gap.exact_frames, gap.frames);
+  if (const ResolvedCounters r = s.resolved(); r.components > 0)
+    text +=
+        format("  expressions       %d, for %d sprites that would have been merged; %d reads, %d registers\n",
+               r.components, r.layers, r.reads, r.registers);
   text += format("  planning          %.2f us per layer and frame\n", s.planning_us_per_layer_and_frame());
   if (has_compression(s)) text += compression_row(s);
   text += time_row(s);

@@ -219,5 +219,43 @@ TEST(CompositeInvariants, TranslationByWholeTilesMovesThePicture) {
   EXPECT_GT(shown, 1500);
 }
 
+TEST(CompositeOnto, StackInPartsEqualsTheWhole) {
+  // 48 x 40 pixels: the last tiles of a line and the last band are cut.
+  const std::uint64_t seed = 20260407;
+  SCOPED_TRACE(seed);
+  Random random(seed);
+  for (int trial = 0; trial < 60; ++trial) {
+    std::vector<Sprite> sprites;
+    for (int k = 0; k < 4; ++k) sprites.push_back(random.sprite(70));
+    std::vector<PlacedSprite> stack;
+    for (const Sprite& sprite : sprites) {
+      stack.push_back(placed(sprite, translation(random.real(-20, 30), random.real(-20, 30))));
+      stack.back().alpha_multiplier = random.chance(0.5) ? 1.0f : 0.4f;
+    }
+    const std::size_t cut = random.integer(0, 4);
+    const std::span<const PlacedSprite> all(stack);
+    const CompositeResult whole = composite(all, kDisplay, {0.2f, 0.4f, 0.6f});
+    CompositeResult parts = composite(all.first(cut), kDisplay, {0.2f, 0.4f, 0.6f});
+    parts.counters += composite_onto(parts.frame, all.subspan(cut));
+    EXPECT_EQ(difference(parts.frame, whole.frame), "") << "trial " << trial << ", cut " << cut;
+    EXPECT_EQ(parts.counters, whole.counters);
+  }
+}
+
+TEST(CompositeOnto, ClearFrameTakesTheTexelsWithTheirAlpha) {
+  // On a frame that is not opaque, alpha has to be composited too: translucent over nothing is itself.
+  Random random(7);
+  const Sprite sprite = make_sprite(kDisplay, [&](int, int) {
+    return Texel{random.byte(), random.byte(), random.byte(), random.byte()};
+  });
+  Frame frame{kDisplay.x, kDisplay.y, {}};
+  frame.pixels.resize(static_cast<std::size_t>(kDisplay.x) * kDisplay.y);
+  const PlacedSprite one = placed(sprite, translation(0, 0));
+  composite_onto(frame, {&one, 1});
+  for (int y = 0; y < kDisplay.y; ++y)
+    for (int x = 0; x < kDisplay.x; ++x)
+      ASSERT_EQ(to_string(frame.pixels[y * kDisplay.x + x]), to_string(decode(sprite.texel(x, y))));
+}
+
 }  // namespace
 }  // namespace talisman::chunker

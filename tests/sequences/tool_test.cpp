@@ -292,6 +292,9 @@ TEST_F(Tool, InspectTellsTheOrderOverTime) {
   const Outcome wrong = run("plan cube.obj --cycles split");
   EXPECT_EQ(wrong.exit_code, 2);
   EXPECT_THAT(wrong.output, HasSubstr("--cycles is 'split', must be one of merge, keep"));
+  const Outcome unknown = run("plan cube.obj --compositor fancy");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.output, HasSubstr("--compositor is 'fancy', must be one of talisman, extended"));
 }
 
 }  // namespace
