@@ -210,6 +210,51 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
   expect_bad_input("render cube.obj --no-such-option", {"no-such-option"});
 }
 
+TEST_F(Tool, BadCompressionExitsWithTwoAndNamesOptionValueAndRule) {
+  expect_bad_input("render cube.obj --compression 101", {"--compression is 101", "from 1 to 100, or 0 for none"});
+  expect_bad_input("render cube.obj --compression -1", {"--compression is -1", "from 1 to 100"});
+  expect_bad_input("render cube.obj --compression 2.5", {"--compression", "2.5"});
+  expect_bad_input("render cube.obj --compression high", {"--compression", "high"});
+  expect_bad_input("render cube.obj --compression", {"--compression", "required"});
+  expect_bad_input("render cube.obj --compression 85 --policy direct", {"--compression needs sprites", "direct"});
+  expect_bad_input("plan cube.obj --compression 85", {"--compression"});  // a plan keeps no sprites
+  EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing was begun";
+}
+
+TEST_F(Tool, BadBudgetsExitWithTwoAndNameOptionValueAndRule) {
+  for (const std::string amount : {"polygons", "pixels", "chunks"}) {
+    const std::string option = "plan cube.obj --policy budget --budget-" + amount;
+    expect_bad_input(option + " -1", {"budget_" + amount, "-1", "at least 0"});
+    expect_bad_input(option + " few", {"--budget-" + amount, "few"});
+    expect_bad_input(option + " 1.5", {"--budget-" + amount, "1.5"});
+    expect_bad_input(option + " 99999999999999999999", {"--budget-" + amount, "99999999999999999999"});
+    expect_bad_input(option, {"--budget-" + amount, "required"});
+  }
+  expect_bad_input("plan cube.obj --policy budget --budget-ms -0.5", {"budget_ms", "-0.5", "at least 0"});
+  expect_bad_input("plan cube.obj --policy budget --budget-ms soon", {"--budget-ms", "soon"});
+  expect_bad_input("plan cube.obj --min-resolution 0", {"min_resolution", "0", "above 0"});
+  expect_bad_input("plan cube.obj --budget-gap=often", {"--budget-gap", "often"});
+}
+
+TEST_F(Tool, BadPredictionsExitWithTwoAndNameOptionValueAndRule) {
+  expect_bad_input("plan cube.obj --policy lookahead --predict ''", {"--predict"});
+  expect_bad_input("plan cube.obj --policy lookahead --predict 1", {"--predict is '1'", "known, linear"});
+  for (const std::string policy : {"threshold", "budget --budget-pixels 9", "hold", "oracle"})
+    expect_bad_input("plan cube.obj --predict linear --policy " + policy,
+                     {"--predict is 'linear'", policy.substr(0, policy.find(' ')), "must be lookahead"});
+}
+
+TEST_F(Tool, SeparateTakesNoValueAndOnlyRenderHasIt) {
+  expect_bad_input("render cube.obj --separate=floor", {"--separate", "floor"});
+  expect_bad_input("plan cube.obj --separate", {"--separate"});
+}
+
+TEST_F(Tool, SeparateOfAModelWithoutShadeLayersWritesNoPicture) {
+  const Outcome outcome = run("render cube.obj --separate --out o --frames 0-1 --size 64x48 --progress none");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_TRUE(files_in("o/separate").empty());
+}
+
 TEST_F(Tool, BadModelsAndSequencesExitWithTwo) {
   write("empty.obj", "");
   expect_bad_input("render empty.obj", {"empty.obj"});
