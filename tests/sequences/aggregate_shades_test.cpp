@@ -47,6 +47,12 @@ const std::string kLampAndWall =
     "  - {name: ball, parts: [ball]}\n";
 constexpr int kWall = 0, kShadow = 1, kSpecular = 2, kBall = 3, kBoth = 4;
 
+/// `text` with `from` replaced, which must be there.
+std::string with(std::string text, const std::string& from, const std::string& to) {
+  text.replace(text.find(from), from.size(), to);
+  return text;
+}
+
 Sequence sequence_of(const std::string& text) {
   const TemporaryFolder folder;
   return load_sequence(folder.write("merging.yaml", text));
@@ -127,6 +133,27 @@ TEST(AggregateShades, AggregateHoldsTheTermsOfItsMembers) {
   EXPECT_EQ(both.polygons, s.layers.layers[kWall].polygons + s.layers.layers[kBall].polygons);
 }
 
+TEST(AggregateShades, FadeThatAllMembersShareGoesOn) {
+  // The fade needs no render, and must not stop because two layers meet.
+  const std::string fade = ", fade: [{t: 0, value: 1}, {t: 16, value: 0}]}";
+  const std::string one = with(kLampAndWall, "parts: [ball]}", "parts: [ball]" + fade);
+  const std::string all = with(one, "specular: {}}}", "specular: {}}" + fade);
+  for (const bool common : {true, false}) {
+    const Sequence s = sequence_of(common ? all : one);
+    Playback run(s, settings_of(s, Policy::Threshold));
+    int merged_frames = 0;
+    while (run.frame < 12) {
+      const FrameReport report = run.next();
+      for (const ShownSprite& sprite : report.shown) {
+        if (sprite.layer != kBoth) continue;
+        ++merged_frames;
+        EXPECT_FLOAT_EQ(sprite.multipliers.alpha, common ? 1 - report.frame / 16.0f : 1.0f) << report.frame;
+      }
+    }
+    EXPECT_GT(merged_frames, 2);
+  }
+}
+
 /// The alpha of a shown sprite at a pixel, 0 … 255.
 int alpha_at(const ShownSprite& shown, const chunker::SpriteStore& sprites, int x, int y) {
   const int column = x - static_cast<int>(std::lround(shown.screen_from_sprite[2].x));
@@ -177,12 +204,6 @@ void expect_merged_frames_equal_one_pass(const Sequence& s, const Sequence& with
   EXPECT_EQ(wrong, 0);
   EXPECT_GT(compared, 3L * 160 * 120 / 2);
   EXPECT_GT(of_the_term, 200) << "the term is not to be seen: nothing was tested";
-}
-
-/// `text` with `from` replaced, which must be there.
-std::string with(std::string text, const std::string& from, const std::string& to) {
-  text.replace(text.find(from), from.size(), to);
-  return text;
 }
 
 TEST(AggregateShades, ShadowInAnAggregateIsThatOfOnePass) {

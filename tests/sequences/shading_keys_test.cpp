@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "layers/effects.h"
 #include "sequences/image_io.h"
 #include "sequences/options.h"
 #include "sequences/sequence_file.h"
@@ -181,6 +182,20 @@ TEST(LoadLights, ShadowMapHasItsOptions) {
   EXPECT_EQ(s.scene->lights[1].shadow, layers::ShadowMapOptions{});
 }
 
+TEST(LoadLights, MapWithoutTexelsCastsNoShadowAndCostsNothing) {
+  const TemporaryFolder folder;
+  std::vector<std::string> lines = kLines;
+  lines[6].replace(lines[6].find("512"), 3, "0");
+  const Sequence s = load(folder, lines);
+  EXPECT_TRUE(s.layers.casting_parts.empty());
+  for (const Layer& layer : s.layers.layers) EXPECT_NE(layer.kind, LayerKind::Shadow) << layer.name;
+  for (const layers::EffectCall& call : layers::effects_called_for(*s.scene, s.layers.layers))
+    if (call.effect == layers::Effect::ShadowMap) {
+      EXPECT_FALSE(call.called);
+      EXPECT_EQ(call.why, "no light casts shadows");
+    }
+}
+
 TEST(LoadLights, NoMoreThanFourCastShadows) {
   const TemporaryFolder folder;
   std::vector<std::string> lines = kLines;
@@ -322,8 +337,9 @@ TEST(LoadShading, BlendWithoutATextureLayerIsRefused) {
   const TemporaryFolder folder;
   std::vector<std::string> lines = kLines;
   lines[17] = "";
-  EXPECT_THAT(message_of([&] { load(folder, lines); }),
-              HasSubstr("test.yaml:19: layers[0].shading.first_blend is '0.4', rule: only together with textures"));
+  EXPECT_THAT(
+      message_of([&] { load(folder, lines); }),
+      HasSubstr("test.yaml:19: layers[0].shading.first_blend is '0.4', rule: only together with textures"));
 }
 
 TEST(LoadCompression, WhatIsWrongIsRefusedWithItsLine) {
