@@ -110,6 +110,7 @@ LayerDecision reuse(const LayerAssessment& layer, std::string reason) {
 LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason) {
   LayerDecision decision = reuse(layer, std::move(reason));
   decision.shown_warp = {};
+  decision.shown_color = layers::dvec3(1.0);
   decision.shown_geometric_px = layer.held_geometric_px;
   return decision;
 }

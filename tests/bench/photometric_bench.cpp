@@ -22,9 +22,7 @@ namespace {
 struct Workload {
   explicit Workload(const benchmark::State& run, bool lit)
       : world(box_corners({1, 0.5, 2}), static_cast<layers::BoundKind>(run.range(0))) {
-    world.lights = {{layers::Light::Kind::Ambient, {}, {0, -1, 0}, {0.2f, 0.2f, 0.2f}},
-                    {layers::Light::Kind::Directional, {}, {0, -1, 0}, {1, 1, 1}},
-                    {layers::Light::Kind::Point, {4, 3, -2}, {0, -1, 0}, {1, 1, 1}}};
+    world.lights = {ambient({0.2f, 0.2f, 0.2f}), sun({0, -1, 0}), lamp({4, 3, -2})};
     if (lit) world.bound.surface.emplace();
     if (lit) world.bound.surface->base = {0.5, 0.5, 0.5};
     if (lit && run.range(1) == 1) {

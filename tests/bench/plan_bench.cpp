@@ -77,10 +77,14 @@ void Order(benchmark::State& run) {
   const Workload work(regulator::Policy::Threshold);
   const sequences::Pipeline pipeline(work.scene, work.layers, work.settings);
   sequences::PipelineState state(pipeline);
-  std::vector<layers::WorldBounds> bounds;
-  for (const layers::LayerState& s : sequences::states_at(pipeline, state, 31))
-    bounds.push_back(layers::bounds_of(s.world_points));
-  for (auto _ : run) benchmark::DoNotOptimize(layers::back_to_front({0, 0, 0}, work.layers.layers, bounds));
+  int frame = 0;
+  for (auto _ : run) {
+    run.PauseTiming();
+    frame = (frame + 1) % kFrames;
+    sequences::states_at(pipeline, state, frame);
+    run.ResumeTiming();
+    benchmark::DoNotOptimize(sequences::order_layers(pipeline, state, frame));
+  }
 }
 BENCHMARK(Order)->Unit(benchmark::kMicrosecond);
 

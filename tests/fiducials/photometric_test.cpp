@@ -22,19 +22,15 @@ using layers::LightState;
 using layers::vec3;
 using tests::moved_by;
 using tests::turned_by;
+using tests::lamp;
+using tests::sun;
 using tests::uniform;
 using tests::uniform3;
 
 constexpr double kPi = std::numbers::pi;
 const dmat4 kAhead = moved_by({0, 0, -10});
 
-LightState sun(const dvec3& direction, const vec3& color = {1, 1, 1}) {
-  return {Light::Kind::Directional, {}, glm::normalize(direction), color};
-}
-LightState lamp(const dvec3& position, const vec3& color = {1, 1, 1}) {
-  return {Light::Kind::Point, position, {0, -1, 0}, color};
-}
-LightState ambient(float grey) { return {Light::Kind::Ambient, {}, {0, -1, 0}, vec3(grey)}; }
+LightState ambient(float grey) { return tests::ambient(vec3(grey)); }
 
 /// A grey box of 2 m in a world of lights; 10 m ahead of the eye where `kAhead` moves it.
 struct LitBox : tests::World {

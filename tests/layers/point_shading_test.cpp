@@ -15,16 +15,12 @@
 namespace talisman::layers {
 namespace {
 
+using tests::ambient;
+using tests::lamp;
+using tests::light_of_kind;
+using tests::sun;
 using tests::uniform;
 using tests::uniform3;
-
-LightState sun(const dvec3& direction, const vec3& color = {1, 1, 1}) {
-  return {Light::Kind::Directional, {}, glm::normalize(direction), color};
-}
-LightState lamp(const dvec3& position, const vec3& color = {1, 1, 1}) {
-  return {Light::Kind::Point, position, {0, -1, 0}, color};
-}
-LightState ambient(const vec3& color) { return {Light::Kind::Ambient, {}, {0, -1, 0}, color}; }
 
 MeanSurface grey(double shininess = 0) {
   MeanSurface surface;
@@ -63,7 +59,11 @@ TEST(ShadedColor, EqualsTheRenderersFormula) {
     SceneFrame frame = scene.at(0);
     frame.lights = {ambient(vec3(uniform3(random, 0, 0.3))),
                     sun(uniform3(random, -1, 1), vec3(uniform3(random, 0, 1))),
-                    lamp(uniform3(random, -4, 4), vec3(uniform3(random, 0, 1)))};
+                    lamp(uniform3(random, -4, 4), vec3(uniform3(random, 0, 1))),
+                    light_of_kind(Light::Kind::Spot, uniform3(random, -4, 4),
+                                  glm::normalize(uniform3(random, -1, 1)), vec3(uniform3(random, 0, 1)))};
+    frame.lights.back().inner_cone_rad = uniform(random, 0, 0.7);
+    frame.lights.back().outer_cone_rad = frame.lights.back().inner_cone_rad + uniform(random, 0.05, 0.8);
     SurfacePoint point{uniform3(random, -2, 2), glm::normalize(uniform3(random, -1, 1)),
                        dvec3(frame.camera.world_from_camera[3])};
     Layer layer;
@@ -91,7 +91,7 @@ TEST(ShadedColor, LightsThatAreNotFiniteGiveNothing) {
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
     const LightState lights[] = {lamp({bad, 0, 0}),
                                  sun({0, 0, -1}, {static_cast<float>(bad), 0, 0}),
-                                 {Light::Kind::Directional, {}, {0, bad, 0}, {1, 1, 1}}};
+                                 light_of_kind(Light::Kind::Directional, {}, {0, bad, 0}, {1, 1, 1})};
     EXPECT_EQ(shaded_color(grey(20), lights, point), dvec3(0.0)) << bad;
   }
 }

@@ -138,8 +138,10 @@ std::string why(const Room& room, Effect effect) {
   return "?";
 }
 
-TEST(EffectsCalledFor, BareLitSceneCallsForLightingAlone) {
-  EXPECT_THAT(called(Room()), ElementsAre(testing::Pair("lighting", HasSubstr("is lit"))));
+// Two layers that can hide each other, and light: nothing else.
+TEST(EffectsCalledFor, BareLitSceneCallsForLightingAndAnOrder) {
+  EXPECT_THAT(called(Room()), ElementsAre(testing::Pair("lighting", HasSubstr("is lit")),
+                                          testing::Pair("visibility_sort", HasSubstr("can overlap"))));
 }
 
 TEST(EffectsCalledFor, EveryShadeEffectSaysWhyNot) {
@@ -158,7 +160,8 @@ TEST(EffectsCalledFor, EveryShadeEffectOfAFactoredRoom) {
   for (const auto& [effect, reason] : table) effects.push_back(effect);
   EXPECT_THAT(effects,
               ElementsAre("lighting", "mip_filter", "reflection_layer", "reflection_map", "shadow_layer",
-                          "shadow_map", "specular_highlight", "specular_layer", "texture", "texture_layers"));
+                          "shadow_map", "specular_highlight", "specular_layer", "texture", "texture_layers",
+                          "visibility_sort"));
 }
 
 TEST(EffectsCalledFor, ShadowMapAtRestIsDrawnOnce) {

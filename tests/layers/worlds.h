@@ -46,6 +46,25 @@ inline std::vector<dvec3> box_corners(const dvec3& half_size) {
   return corners;
 }
 
+inline layers::LightState light_of_kind(layers::Light::Kind kind, const dvec3& position,
+                                        const dvec3& direction, const layers::vec3& color) {
+  layers::LightState light;
+  light.kind = kind;
+  light.position = position;
+  light.direction = direction;
+  light.color = color;
+  return light;
+}
+inline layers::LightState sun(const dvec3& direction, const layers::vec3& color = {1, 1, 1}) {
+  return light_of_kind(layers::Light::Kind::Directional, {}, glm::normalize(direction), color);
+}
+inline layers::LightState lamp(const dvec3& position, const layers::vec3& color = {1, 1, 1}) {
+  return light_of_kind(layers::Light::Kind::Point, position, {0, -1, 0}, color);
+}
+inline layers::LightState ambient(const layers::vec3& color) {
+  return light_of_kind(layers::Light::Kind::Ambient, {}, {0, -1, 0}, color);
+}
+
 /// A cloud of points on one moving node, seen by a camera that looks along -z from the origin unless it is
 /// moved.
 struct World {

@@ -71,7 +71,7 @@ TEST(PlanBudget, NeverSpendsMoreThanAnyOfItsBudgetsExceptOnFirstAppearances) {
           of.polygons += d.cost.polygons;
           of.pixels += d.cost.pixels;
           of.chunks += d.cost.chunks;
-          renders += d.cost.polygons > 0;
+          renders += d.cost.polygons > 0 && d.layer < 12;  // merged layers may appear in any frame
         }
         EXPECT_TRUE(regulator::after(budget, first).affords(spent))
             << "seed " << seed << " frame " << report.frame << ": " << spent.polygons << " polygons, "
