@@ -39,10 +39,23 @@ void hold_terms_of(const Layer& member, Layer& aggregate) {
   holds.second_texture =
       holds.second_texture || member.holds.second_texture || member.factored.second_texture;
   join(aggregate.casters, member.casters);
-  if (!member.holds.reflection || holds.reflection) return;  // one sprite looks one reflection up: the first member's
+  if (!member.holds.reflection || holds.reflection)
+    return;  // one sprite looks one reflection up: the first member's
   holds.reflection = true;
   aggregate.plane = member.plane;
   aggregate.reflected = member.reflected;
+}
+
+bool same(const Keys<double>& a, const Keys<double>& b) {
+  return a.times_s == b.times_s && a.values == b.values && a.interpolation == b.interpolation;
+}
+
+/// One sprite has one fade: that of its members, if they have one in common.
+Keys<double> common_fade(std::span<const Layer> layers, std::span<const int> members) {
+  const Keys<double>& fade = layers[members.front()].fade;
+  const bool common = std::all_of(members.begin(), members.end(),
+                                  [&](int member) { return same(layers[member].fade, fade); });
+  return common ? fade : Keys<double>{};
 }
 
 std::string joined_names(std::span<const Layer> layers, std::span<const int> members) {
@@ -75,6 +88,7 @@ Layer aggregate_of(std::span<const Layer> layers, std::span<const int> members, 
     for (std::size_t k = member + 1; k < layers.size() && layers[k].base == member; ++k)
       hold_terms_of(layers[k], aggregate);
   }
+  aggregate.fade = common_fade(layers, members);
   aggregate.preferences.bound_each_part = true;
   std::sort(aggregate.parts.begin(), aggregate.parts.end());
   return aggregate;

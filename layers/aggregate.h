@@ -8,7 +8,11 @@
 ///   name          "a+b", the members in the order of their ids
 ///   preferences   the strictest of its members': the larger of any two weights, resolutions and update rates
 ///   bound         the members' bounds as bodies, so that the points of each member keep their indices and
-///   move with it group         the members' group (layers of different groups never are in one cycle)
+///                 move with it
+///   group         the members' group (layers of different groups never are in one cycle)
+///   fade          that of the members if all have the same; else none, for one sprite has one multiplier:
+///                 while they are merged, members are shown in full
+///   textures      second textures are blended as the members' materials say, whatever their blends over time
 
 #include <span>
 #include <vector>

@@ -13,6 +13,8 @@
 namespace talisman::sequences {
 namespace {
 
+/// A date that is plainly none.
+constexpr const char* kNoDate = "1970:01:01 00:00:00";
 constexpr int kPngFilterSub = 0x10;  // PNG_FILTER_SUB of png.h
 /// 16384², 0.8 GB as bytes: more is a damaged or hostile header.
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
@@ -98,6 +100,8 @@ void write_exr(const std::string& path, const chunker::Frame& frame) {
     for (const std::uint16_t v : {p.r, p.g, p.b}) linear.push_back(static_cast<float>(v) / chunker::kOne);
   OIIO::ImageSpec spec(frame.width, frame.height, 3, OIIO::TypeDesc::HALF);
   spec.attribute("compression", "piz");  // lossless, as quick as none, a fifth of the bytes
+  // Without a date the encoder takes the clock's, and the same frame has other bytes a second later.
+  spec.attribute("DateTime", kNoDate);
   write_text_atomically(path, encode(path, ".exr", spec, OIIO::TypeDesc::FLOAT, linear.data()));
 }
 

@@ -342,6 +342,7 @@ void read_light(YamlMap map, SceneRecipe& recipe) {
   if (light.kind != Kind::Ambient) {
     map.read("casts_shadow", light.casts_shadow);
     if (const YamlValue* shadow = map.find("shadow_map")) light.shadow = read_shadow_map(shadow->map());
+    if (light.shadow.resolution_px == 0) light.casts_shadow = false;  // no map: no pass and no layer either
   }
   map.finish();
   recipe.lights.push_back(light);

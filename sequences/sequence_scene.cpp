@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
 
 #include <glm/geometric.hpp>
@@ -127,17 +128,21 @@ void add_model(BuiltScene& built, const ModelRecipe& recipe) {
   }
 }
 
+/// Named as textures of models are: where the content lies differs from machine to machine, and results name
+/// it.
+int add_texture(layers::Scene& scene, const std::string& file) {
+  scene.textures.push_back(read_texture(file));
+  scene.textures.back().name = std::filesystem::path(file).filename().string();
+  return static_cast<int>(scene.textures.size()) - 1;
+}
+
 void add_shape(BuiltScene& built, const ShapeRecipe& recipe) {
   layers::Scene& scene = built.scene;
   layers::Material material = recipe.content.material;
-  if (!recipe.content.texture_file.empty()) {
-    material.texture = static_cast<int>(scene.textures.size());
-    scene.textures.push_back(read_texture(recipe.content.texture_file));
-  }
-  if (!recipe.content.second_texture_file.empty()) {
-    material.texture2 = static_cast<int>(scene.textures.size());
-    scene.textures.push_back(read_texture(recipe.content.second_texture_file));
-  }
+  const ShapeContent& content = recipe.content;
+  if (!content.texture_file.empty()) material.texture = add_texture(scene, content.texture_file);
+  if (!content.second_texture_file.empty())
+    material.texture2 = add_texture(scene, content.second_texture_file);
   const int mesh = static_cast<int>(scene.meshes.size());
   scene.meshes.push_back(shape_mesh(recipe.content));
   scene.meshes.back().name = material.name;

@@ -167,6 +167,35 @@ TEST_F(Tool, KilledRunContinuesWithTheSameBytes) {
   EXPECT_EQ(files_in("cut/frames"), files_in("whole/frames")) << "no temporary file stays";
 }
 
+TEST_F(Tool, RunKilledWhileLayersAreMergedContinuesWithTheSameBytes) {
+  // A ball passes through a wall again and again: aggregates come and go before, at and after the frame of the kill,
+  // and the resumed run must know their sprites and ids though it draws none of the frames that made them.
+  write("passing.yaml",
+        "frames: 40\nfps: 1\ndisplay: [480, 360]\n"
+        "shapes:\n  - {id: wall, box: [1, 4, 4], color: [0.6, 0.5, 0.4]}\n"
+        "  - {id: ball, sphere: 2, flight: [{t: 0, position: [5, 0, 0], target: [-100, 0, 0]},"
+        " {t: 10, position: [-5, 0, 0], target: [-100, 0, 0]}, {t: 20, position: [5, 0, 0], target: [-100, 0, 0]},"
+        " {t: 30, position: [-5, 0, 0], target: [-100, 0, 0]}]}\n"
+        "camera: {fov_deg: 60, near_m: 1, far_m: 100, position: [2, 1, 12], look_at: [0, 0, 0]}\n"
+        "lights:\n  - {kind: ambient, color: [0.3, 0.3, 0.3]}\n"
+        "  - {kind: spot, name: lamp, position: [9, 7, 3], look_at: [0, 0, 0], inner_deg: 30, outer_deg: 40,"
+        " casts_shadow: true}\n"
+        "layers:\n  - {name: wall, parts: [wall], shading: {shadows: {}}}\n  - {name: ball, parts: [ball]}\n");
+  const std::string options = "render passing.yaml --progress none --out ";
+  ASSERT_EQ(run(options + "whole").exit_code, 0);
+  run_and_signal(options + "cut", "cut/frames/0006.png", "KILL");
+  EXPECT_FALSE(fs::exists(folder_ / "cut/summary.json")) << "the run was meant to be killed before its end";
+  const Outcome resumed = run(options + "cut --resume");
+  ASSERT_EQ(resumed.exit_code, 0) << resumed.output;
+  EXPECT_THAT(resumed.output, HasSubstr("complete frames of an earlier run"));
+  EXPECT_EQ(frame_hashes("cut"), frame_hashes("whole"));
+  EXPECT_EQ(read("cut/decisions.jsonl"), read("whole/decisions.jsonl"));
+  EXPECT_THAT(read("cut/decisions.jsonl"), AllOf(HasSubstr("merged into wall+ball"), HasSubstr("split from wall+ball")));
+  for (const std::string& frame : files_in("whole/frames"))
+    EXPECT_EQ(read("cut/frames/" + frame), read("whole/frames/" + frame)) << frame;
+  EXPECT_EQ(files_in("cut/frames"), files_in("whole/frames"));
+}
+
 TEST_F(Tool, InterruptedRunSaysSoAndExitsWithThree) {
   const Outcome outcome = run_and_signal(
       "render cube.obj --frames 0-59 --size 640x480 --progress none --out o", "o/frames/0002.png", "INT");
@@ -208,6 +237,46 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
   expect_bad_input("render cube.obj --format none --video", {"--video"});
   expect_bad_input("render cube.obj --threads -1", {"--threads"});
   expect_bad_input("render cube.obj --no-such-option", {"no-such-option"});
+}
+
+// The carousel stands in for any sequence: it needs no package, and no reader of models.
+TEST_F(Tool, BadCompressionExitsWithTwoAndNamesOptionValueAndRule) {
+  expect_bad_input("render carousel --compression 101", {"--compression is 101", "from 1 to 100, or 0 for none"});
+  expect_bad_input("render carousel --compression -1", {"--compression is -1", "from 1 to 100"});
+  expect_bad_input("render carousel --compression 2.5", {"--compression", "2.5"});
+  expect_bad_input("render carousel --compression high", {"--compression", "high"});
+  expect_bad_input("render carousel --compression", {"--compression", "required"});
+  expect_bad_input("render carousel --compression 85 --policy direct", {"--compression needs sprites", "direct"});
+  expect_bad_input("plan carousel --compression 85", {"--compression"});  // a plan keeps no sprites
+  EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing was begun";
+}
+
+TEST_F(Tool, BadBudgetsExitWithTwoAndNameOptionValueAndRule) {
+  expect_bad_input("plan carousel --policy budget --budget-polygons few", {"--budget-polygons", "few"});
+  expect_bad_input("plan carousel --policy budget --budget-pixels 1.5", {"--budget-pixels", "1.5"});
+  expect_bad_input("plan carousel --policy budget --budget-chunks", {"--budget-chunks", "required"});
+  expect_bad_input("plan carousel --policy budget --budget-pixels -1", {"budget_pixels", "-1", "at least 0"});
+  expect_bad_input("plan carousel --policy budget --budget-ms soon", {"--budget-ms", "soon"});
+  expect_bad_input("plan carousel --min-resolution 0", {"min_resolution", "0", "above 0"});
+  expect_bad_input("plan carousel --budget-gap=often", {"--budget-gap", "often"});
+}
+
+TEST_F(Tool, BadPredictionsExitWithTwoAndNameOptionValueAndRule) {
+  expect_bad_input("plan carousel --policy lookahead --predict 1", {"--predict is '1'", "known, linear"});
+  for (const std::string policy : {"threshold", "budget --budget-pixels 9"})
+    expect_bad_input("plan carousel --predict linear --policy " + policy,
+                     {"--predict is 'linear'", policy.substr(0, policy.find(' ')), "must be lookahead"});
+}
+
+TEST_F(Tool, SeparateTakesNoValueAndOnlyRenderHasIt) {
+  expect_bad_input("render carousel --separate=floor", {"--separate", "floor"});
+  expect_bad_input("plan carousel --separate", {"--separate"});
+}
+
+TEST_F(Tool, SeparateOfAModelWithoutShadeLayersWritesNoPicture) {
+  const Outcome outcome = run("render cube.obj --separate --out o --frames 0-1 --size 64x48 --progress none");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_TRUE(files_in("o/separate").empty());
 }
 
 TEST_F(Tool, BadModelsAndSequencesExitWithTwo) {
