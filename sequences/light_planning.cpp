@@ -18,10 +18,11 @@ void name(const layers::Scene& scene, fiducials::LightRef& light) {
 
 void follow_light_and_faces(const layers::Scene& scene, const layers::LayerSet& layers,
                             const regulator::RegulatorOptions& options,
-                            std::vector<layers::LayerBound>& bounds, std::size_t first) {
+                            std::vector<layers::LayerBound>& bounds) {
   const bool light = regulator::follows_light(options);
   const std::vector<int> carriers = light ? layers::moving_carriers(scene) : std::vector<int>();
-  for (std::size_t i = first; i < bounds.size(); ++i) {
+  for (std::size_t i = 0; i < bounds.size(); ++i) {
+    if (bounds[i].surface_why_not != layers::LayerBound{}.surface_why_not) continue;  // equipped before
     bounds[i].follows_faces = options.turned_px > 0;
     bounds[i].surface_why_not = "no option follows the light";
     if (!light) continue;

@@ -13,10 +13,10 @@ namespace talisman::sequences {
 
 /// Equips the bounds (one per layer) for what these options follow: a surface for each layer on which the
 /// light can change, the frames of the bodies where turned faces are regulated. Cost: once per run; reads
-/// the triangles and textures of the layers concerned, those from `first` on.
+/// the triangles and textures of the layers concerned; bounds that are equipped already stay as they are.
 void follow_light_and_faces(const layers::Scene& scene, const layers::LayerSet& layers,
                             const regulator::RegulatorOptions& options,
-                            std::vector<layers::LayerBound>& bounds, std::size_t first = 0);
+                            std::vector<layers::LayerBound>& bounds);
 
 /// Fills in Report::photometric, with the names of the lights, and Report::turned.
 void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerState& then,

@@ -243,7 +243,7 @@ Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in,
       settings(authored.settings),
       bounds(std::move(bounds_in)),
       sorts_visibility(authored.sorts_visibility) {
-  follow_light_and_faces(scene, layers, settings.regulator, bounds, authored.bounds.size());
+  follow_light_and_faces(scene, layers, settings.regulator, bounds);
 }
 
 FrameReport step(const Pipeline& authored, PipelineState& state, int frame,

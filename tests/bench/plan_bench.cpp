@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// What does planning cost? 119 moving layers, as many as the barnyard of [LS97] has, 250 frames, all
-/// fiducials, on one thread. Counters:
+/// fiducials, on one thread. The layers fly through each other; `merging` draws those that meet into one
+/// sprite, the others leave them apart. Counters:
 ///
 ///   us_per_layer_frame   plan time over layers × frames, as `talisman plan` reports it
 ///   renders              share of layers and frames that are drawn again
@@ -25,7 +26,8 @@ struct Workload {
   layers::Scene scene = fleet_scene(kLayers, 1997, 8);
   layers::LayerSet layers = layers::factor(scene, one_layer_per_part(scene));
   sequences::Settings settings;
-  explicit Workload(regulator::Policy policy) {
+  explicit Workload(regulator::Policy policy, sequences::Cycles cycles = sequences::Cycles::Keep) {
+    settings.cycles = cycles;
     settings.regulator.policy = policy;
     settings.regulator.geometric_px = 1;
     settings.regulator.budget_polygons = kLayers * 12 / 2;
@@ -34,8 +36,9 @@ struct Workload {
   }
 };
 
-void Plan(benchmark::State& run, regulator::Policy policy) {
-  const Workload work(policy);
+void Plan(benchmark::State& run, regulator::Policy policy,
+          sequences::Cycles cycles = sequences::Cycles::Keep) {
+  const Workload work(policy, cycles);
   const sequences::Pipeline pipeline(work.scene, work.layers, work.settings);
   double plan_ms = 0;
   std::int64_t renders = 0, frames = 0;
@@ -54,6 +57,8 @@ void Plan(benchmark::State& run, regulator::Policy policy) {
   run.counters["share_of_16ms"] = plan_ms / static_cast<double>(frames) / (1e3 / 60);
 }
 BENCHMARK_CAPTURE(Plan, threshold, regulator::Policy::Threshold)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(Plan, threshold_merging, regulator::Policy::Threshold, sequences::Cycles::Merge)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Plan, interpolate, regulator::Policy::Interpolate)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(Plan, budget, regulator::Policy::Budget)->Unit(benchmark::kMillisecond);
 
