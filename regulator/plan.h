@@ -98,7 +98,7 @@ struct RegulatorOptions {
   bool color_warp = true;     ///< reused sprites are multiplied with the colour that fits their shading
                               ///< best; false: hardware without it, the photometric error is that of 1
   int lookahead_frames = 16;  ///< Lookahead: N ≥ 0; a sprite may be drawn as of an instant up to N frames
-                              ///< ahead; 0 is Threshold; planning time grows with N, renders fall
+                              ///< ahead; 0 draws as of now; planning time grows with N, renders fall
   std::int64_t budget_polygons = kNoLimit;  ///< Budget: triangles per frame, ≥ 0; more is drawn as it grows
   std::int64_t budget_pixels = kNoLimit;    ///< Budget: sprite texels per frame, ≥ 0; likewise
   std::int64_t budget_chunks = kNoLimit;    ///< Budget: 32×32 chunks of sprites per frame, ≥ 0; likewise
