@@ -16,9 +16,9 @@
 /// = 0 and s = 1 the lattice is that of the pixels: compositing such a sprite unwarped loses nothing. It is
 /// preferred while a rotated rectangle would save less than a stated share of area.
 ///
-/// For motion blur [LS97 3.4, Fig. 11] one axis of the lattice follows the layer's motion on the display, and its
-/// samples are farther apart along it: with density s_x, s_y of the two axes, l = (s_x, s_y) · R(-θ) p. θ and
-/// both densities come from the motion alone, so the rules above hold.
+/// For motion blur [LS97 3.4, Fig. 11] one axis of the lattice follows the layer's motion on the display, and
+/// its samples are farther apart along it: with density s_x, s_y of the two axes, l = (s_x, s_y) · R(-θ) p. θ
+/// and both densities come from the motion alone, so the rules above hold.
 ///
 /// Around the layer there is one texel of padding, for its antialiased edge and the bilinear filter. Only
 /// where the extents cut the layer off, on the lattice of the pixels, there is none: what lies beyond is off
@@ -41,8 +41,8 @@ struct PlacementOptions {
   double min_rotation_gain = 0.25;  ///< share of area that a rotated rectangle must save to be used; 0 … 1;
                                     ///< 1: never rotate
   double resolution_scale = 1;  ///< texels per display pixel, each axis; (0, 4]; cost grows with its square
-  dvec2 motion{0, 0};  ///< direction on the display along which the sprite is blurred, of any length and sign;
-                       ///< {0, 0} or not finite: none
+  dvec2 motion{0, 0};  ///< direction on the display along which the sprite is blurred, of any length and
+                       ///< sign; {0, 0} or not finite: none
   double motion_density = 1;  ///< density along it relative to that across it; [1/16, 1]; 1: no blur; less
                               ///< blurs more and draws fewer texels
   int max_sprite_px = 4096;  ///< ≥ 8; largest side of a sprite in texels; beyond it growth is given up first,

@@ -127,8 +127,8 @@ struct LayerDecision {
   int depicts_frame = -1;  ///< the frame at whose instant the sprite was drawn; ahead of the frame it is
                            ///< shown in only with Lookahead and Oracle; -1 if nothing is shown or not known
   layers::dvec3 shown_color{1, 1, 1};  ///< multiplier of the sprite's colour, 0 … 1; 1 for a fresh sprite
-  double resolution = 1;   ///< of the sprite shown, relative to what the layer's author asks for
-  bool short_of_area = false;  ///< deferred for want of pixels or chunks
+  double resolution = 1;               ///< of the sprite shown, relative to what the layer's author asks for
+  bool short_of_area = false;          ///< deferred for want of pixels or chunks
 };
 
 struct FramePlan {

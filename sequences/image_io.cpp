@@ -83,8 +83,8 @@ std::unique_ptr<OIIO::ImageInput> open_image(const std::string& path) {
 void write_png(const std::string& path, const Image8& image) {
   TALISMAN_CHECK_EQ(image.rgb.size(), static_cast<std::size_t>(image.width) * image.height * 3);
   OIIO::ImageSpec spec(image.width, image.height, 3, OIIO::TypeDesc::UINT8);
-  // Run lengths of differences to the left: on frames of the canyon an eighth of the time of the defaults for 9 %
-  // more bytes; level 1 with filters chosen line by line takes twice as long for 8 % more again.
+  // Run lengths of differences to the left: on frames of the canyon an eighth of the time of the defaults for
+  // 9 % more bytes; level 1 with filters chosen line by line takes twice as long for 8 % more again.
   spec.attribute("png:compressionLevel", 1);
   spec.attribute("compression", "rle");
   spec.attribute("png:filter", kPngFilterSub);

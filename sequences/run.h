@@ -4,8 +4,9 @@
 /// A whole run: frame after frame through `step`, results into a folder.
 ///
 /// The plan always starts at frame 0, whatever range is asked for, so a frame has the same bytes however it
-/// is reached. Frames are written while the next ones are drawn (frame_writer.h). A frame is complete when its picture has its final name and its line is in
-/// frames.jsonl.partial; --resume keeps complete frames and goes on with the rest.
+/// is reached. Frames are written while the next ones are drawn (frame_writer.h). A frame is complete when
+/// its picture has its final name and its line is in frames.jsonl.partial; --resume keeps complete frames and
+/// goes on with the rest.
 
 #include <atomic>
 #include <string>

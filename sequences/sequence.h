@@ -35,7 +35,7 @@ struct Sequence {
   layers::ExtentOptions extents;
   layers::PlacementOptions placement;
   std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are
-  std::optional<double> clip_margin;      ///< View::clip_margin where the file sets it
+  std::optional<double> clip_margin;                       ///< View::clip_margin where the file sets it
   regulator::RegulatorOptions regulator;  ///< defaults of the sequence; the command line overrides
   std::string warp = "aff";               ///< curve name
   std::vector<std::string> warnings;      ///< missing textures and the like, one line each

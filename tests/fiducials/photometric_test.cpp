@@ -20,10 +20,10 @@ using layers::LayerState;
 using layers::Light;
 using layers::LightState;
 using layers::vec3;
-using tests::moved_by;
-using tests::turned_by;
 using tests::lamp;
+using tests::moved_by;
 using tests::sun;
+using tests::turned_by;
 using tests::uniform;
 using tests::uniform3;
 

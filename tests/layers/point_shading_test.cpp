@@ -89,8 +89,7 @@ TEST(ShadedColor, IsLimitedToWhite) {
 TEST(ShadedColor, LightsThatAreNotFiniteGiveNothing) {
   const SurfacePoint point{{0, 0, 0}, {0, 0, 1}, {0, 0, 5}};
   for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity()}) {
-    const LightState lights[] = {lamp({bad, 0, 0}),
-                                 sun({0, 0, -1}, {static_cast<float>(bad), 0, 0}),
+    const LightState lights[] = {lamp({bad, 0, 0}), sun({0, 0, -1}, {static_cast<float>(bad), 0, 0}),
                                  light_of_kind(Light::Kind::Directional, {}, {0, bad, 0}, {1, 1, 1})};
     EXPECT_EQ(shaded_color(grey(20), lights, point), dvec3(0.0)) << bad;
   }

@@ -158,10 +158,9 @@ TEST(EffectsCalledFor, EveryShadeEffectOfAFactoredRoom) {
   const auto table = called(Room().casting().mirroring().shining().textured_twice().factored());
   std::vector<std::string> effects;
   for (const auto& [effect, reason] : table) effects.push_back(effect);
-  EXPECT_THAT(effects,
-              ElementsAre("lighting", "mip_filter", "reflection_layer", "reflection_map", "shadow_layer",
-                          "shadow_map", "specular_highlight", "specular_layer", "texture", "texture_layers",
-                          "visibility_sort"));
+  EXPECT_THAT(effects, ElementsAre("lighting", "mip_filter", "reflection_layer", "reflection_map",
+                                   "shadow_layer", "shadow_map", "specular_highlight", "specular_layer",
+                                   "texture", "texture_layers", "visibility_sort"));
 }
 
 TEST(EffectsCalledFor, ShadowMapAtRestIsDrawnOnce) {

@@ -197,7 +197,8 @@ TEST(PlaceSpriteForMotionBlur, AtRestNothingChanges) {
 TEST(PlaceSpriteForMotionBlur, ThereAndBackHaveTheSameLattice) {
   const Card card({60, 60}, {512, 512});
   for (const dvec2 motion : {dvec2(3, 1), dvec2(-2, 9), dvec2(0, 4), dvec2(5, 0), dvec2(1, -1)})
-    EXPECT_EQ(card.place({0, 0}, {}, blurred(motion, 0.5)), card.place({0, 0}, {}, blurred(-2.0 * motion, 0.5)))
+    EXPECT_EQ(card.place({0, 0}, {}, blurred(motion, 0.5)),
+              card.place({0, 0}, {}, blurred(-2.0 * motion, 0.5)))
         << motion.x << " " << motion.y;
 }
 
@@ -228,7 +229,8 @@ TEST(PlaceSpriteForMotionBlur, DensityIsBoundFromBelow) {
     EXPECT_NEAR(density_along(card.place({0, 0}, {}, blurred({1, 0}, density)), {1, 0}), 1.0 / 16, 1e-12);
   // Tiny and huge motions have a direction too.
   for (const double length : {1e-300, 1e300})
-    EXPECT_EQ(card.place({0, 0}, {}, blurred({0, length}, 0.5)), card.place({0, 0}, {}, blurred({0, 1}, 0.5)));
+    EXPECT_EQ(card.place({0, 0}, {}, blurred({0, length}, 0.5)),
+              card.place({0, 0}, {}, blurred({0, 1}, 0.5)));
 }
 
 // ---- extents [LS97 3.2]

@@ -213,8 +213,8 @@ TEST(WritePng, RoundTripIsExact) {
   }
 }
 
-// No time stamp or host name may find its way into a file: runs are compared byte by byte. Stamps in files count
-// seconds, so the second pair of files is written in another one.
+// No time stamp or host name may find its way into a file: runs are compared byte by byte. Stamps in files
+// count seconds, so the second pair of files is written in another one.
 TEST(WriteImage, SameBytesInAnotherSecond) {
   const Folder folder;
   write_png(folder / "a.png", gradient(50, 40));

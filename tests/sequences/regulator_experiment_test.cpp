@@ -261,7 +261,8 @@ TEST(LookaheadCurve, LiesBetweenThresholdAndOracle) {
     EXPECT_GE(point.renders, curve.oracle_renders) << point.frames;
     EXPECT_LE(point.max_geometric_px, 1) << point.frames;
   }
-  EXPECT_EQ(curve.points[lookaheads - 1].renders, curve.oracle_renders) << "64 frames are more than the sequence has";
+  EXPECT_EQ(curve.points[lookaheads - 1].renders, curve.oracle_renders)
+      << "64 frames are more than the sequence has";
 }
 
 // --- Pareto

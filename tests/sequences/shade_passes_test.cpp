@@ -151,7 +151,7 @@ TEST(ShadePasses, DirectShowsWhatSpritesShow) {
 TEST(ShadePasses, ThresholdZeroEqualsReferenceByteForByte) {
   const Room room = with_flying_ball(Room().casting().mirroring().shining().textured_twice().factored());
   const Show zero = run(room, Policy::Threshold, 8, true, 0),
-            reference = run(room, Policy::Reference, 8, true);
+             reference = run(room, Policy::Reference, 8, true);
   for (int frame = 0; frame < 8; ++frame)
     EXPECT_EQ(difference(zero.reports[frame].picture, reference.reports[frame].picture).max, 0) << frame;
 }

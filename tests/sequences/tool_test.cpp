@@ -168,19 +168,22 @@ TEST_F(Tool, KilledRunContinuesWithTheSameBytes) {
 }
 
 TEST_F(Tool, RunKilledWhileLayersAreMergedContinuesWithTheSameBytes) {
-  // A ball passes through a wall again and again: aggregates come and go before, at and after the frame of the kill,
-  // and the resumed run must know their sprites and ids though it draws none of the frames that made them.
-  write("passing.yaml",
-        "frames: 40\nfps: 1\ndisplay: [480, 360]\n"
-        "shapes:\n  - {id: wall, box: [1, 4, 4], color: [0.6, 0.5, 0.4]}\n"
-        "  - {id: ball, sphere: 2, flight: [{t: 0, position: [5, 0, 0], target: [-100, 0, 0]},"
-        " {t: 10, position: [-5, 0, 0], target: [-100, 0, 0]}, {t: 20, position: [5, 0, 0], target: [-100, 0, 0]},"
-        " {t: 30, position: [-5, 0, 0], target: [-100, 0, 0]}]}\n"
-        "camera: {fov_deg: 60, near_m: 1, far_m: 100, position: [2, 1, 12], look_at: [0, 0, 0]}\n"
-        "lights:\n  - {kind: ambient, color: [0.3, 0.3, 0.3]}\n"
-        "  - {kind: spot, name: lamp, position: [9, 7, 3], look_at: [0, 0, 0], inner_deg: 30, outer_deg: 40,"
-        " casts_shadow: true}\n"
-        "layers:\n  - {name: wall, parts: [wall], shading: {shadows: {}}}\n  - {name: ball, parts: [ball]}\n");
+  // A ball passes through a wall again and again: aggregates come and go before, at and after the frame of
+  // the kill, and the resumed run must know their sprites and ids though it draws none of the frames that
+  // made them.
+  write(
+      "passing.yaml",
+      "frames: 40\nfps: 1\ndisplay: [480, 360]\n"
+      "shapes:\n  - {id: wall, box: [1, 4, 4], color: [0.6, 0.5, 0.4]}\n"
+      "  - {id: ball, sphere: 2, flight: [{t: 0, position: [5, 0, 0], target: [-100, 0, 0]},"
+      " {t: 10, position: [-5, 0, 0], target: [-100, 0, 0]}, {t: 20, position: [5, 0, 0], target: [-100, 0, "
+      "0]},"
+      " {t: 30, position: [-5, 0, 0], target: [-100, 0, 0]}]}\n"
+      "camera: {fov_deg: 60, near_m: 1, far_m: 100, position: [2, 1, 12], look_at: [0, 0, 0]}\n"
+      "lights:\n  - {kind: ambient, color: [0.3, 0.3, 0.3]}\n"
+      "  - {kind: spot, name: lamp, position: [9, 7, 3], look_at: [0, 0, 0], inner_deg: 30, outer_deg: 40,"
+      " casts_shadow: true}\n"
+      "layers:\n  - {name: wall, parts: [wall], shading: {shadows: {}}}\n  - {name: ball, parts: [ball]}\n");
   const std::string options = "render passing.yaml --progress none --out ";
   ASSERT_EQ(run(options + "whole").exit_code, 0);
   run_and_signal(options + "cut", "cut/frames/0006.png", "KILL");
@@ -190,7 +193,8 @@ TEST_F(Tool, RunKilledWhileLayersAreMergedContinuesWithTheSameBytes) {
   EXPECT_THAT(resumed.output, HasSubstr("complete frames of an earlier run"));
   EXPECT_EQ(frame_hashes("cut"), frame_hashes("whole"));
   EXPECT_EQ(read("cut/decisions.jsonl"), read("whole/decisions.jsonl"));
-  EXPECT_THAT(read("cut/decisions.jsonl"), AllOf(HasSubstr("merged into wall+ball"), HasSubstr("split from wall+ball")));
+  EXPECT_THAT(read("cut/decisions.jsonl"),
+              AllOf(HasSubstr("merged into wall+ball"), HasSubstr("split from wall+ball")));
   for (const std::string& frame : files_in("whole/frames"))
     EXPECT_EQ(read("cut/frames/" + frame), read("whole/frames/" + frame)) << frame;
   EXPECT_EQ(files_in("cut/frames"), files_in("whole/frames"));
@@ -231,7 +235,8 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
   expect_bad_input("render cube.obj --min-resolution 2", {"min_resolution", "2", "at most 1"});
   expect_bad_input("plan cube.obj --budget-gap", {"--budget-gap", "threshold", "must be budget"});
   expect_bad_input("plan cube.obj --predict crystal", {"--predict", "crystal", "known, linear"});
-  expect_bad_input("plan cube.obj --predict linear --policy oracle", {"--predict", "oracle", "must be lookahead"});
+  expect_bad_input("plan cube.obj --predict linear --policy oracle",
+                   {"--predict", "oracle", "must be lookahead"});
   expect_bad_input("render cube.obj --cutoff-px nan", {"cutoff_px", "at least 0"});
   expect_bad_input("render cube.obj --format gif", {"--format", "gif", "png"});
   expect_bad_input("render cube.obj --format none --video", {"--video"});
@@ -241,12 +246,14 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
 
 // The carousel stands in for any sequence: it needs no package, and no reader of models.
 TEST_F(Tool, BadCompressionExitsWithTwoAndNamesOptionValueAndRule) {
-  expect_bad_input("render carousel --compression 101", {"--compression is 101", "from 1 to 100, or 0 for none"});
+  expect_bad_input("render carousel --compression 101",
+                   {"--compression is 101", "from 1 to 100, or 0 for none"});
   expect_bad_input("render carousel --compression -1", {"--compression is -1", "from 1 to 100"});
   expect_bad_input("render carousel --compression 2.5", {"--compression", "2.5"});
   expect_bad_input("render carousel --compression high", {"--compression", "high"});
   expect_bad_input("render carousel --compression", {"--compression", "required"});
-  expect_bad_input("render carousel --compression 85 --policy direct", {"--compression needs sprites", "direct"});
+  expect_bad_input("render carousel --compression 85 --policy direct",
+                   {"--compression needs sprites", "direct"});
   expect_bad_input("plan carousel --compression 85", {"--compression"});  // a plan keeps no sprites
   EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing was begun";
 }
@@ -327,11 +334,12 @@ TEST_F(Tool, InspectPrintsTheEffectTable) {
 }
 
 TEST_F(Tool, AccuracyOfTheRegulatorOnABareModel) {
-  const Outcome outcome =
-      run("accuracy --regulator cube.obj --frames 0-11 --size 64x48 --quality-every 4 --progress none --out o");
+  const Outcome outcome = run(
+      "accuracy --regulator cube.obj --frames 0-11 --size 64x48 --quality-every 4 --progress none --out o");
   ASSERT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("threshold"), HasSubstr("oracle"), HasSubstr("results in o")));
-  for (const char* name : {"regulator.csv", "regulator.svg", "regulator.json", "lookahead.csv", "calibration.csv"})
+  for (const char* name :
+       {"regulator.csv", "regulator.svg", "regulator.json", "lookahead.csv", "calibration.csv"})
     EXPECT_TRUE(fs::exists(folder_ / "o" / name)) << name;
   expect_bad_input("accuracy --regulator nothing", {"nothing"});
   expect_bad_input("accuracy --regulator cube.obj --frames 5-2", {"--frames", "5-2"});
