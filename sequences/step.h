@@ -4,7 +4,7 @@
 /// One frame of the pipeline: the only place where the decision side (layers, warp, fiducials, regulator) and
 /// the pixel side (chunker) meet.
 ///
-///   scene.at(t) → capture → correspond → fit → assess → regulate → [render →] [composite →] report
+///   scene.at(t) → capture → order → correspond → fit → assess → regulate → [render →] [composite →] report
 ///
 /// Without a `PixelSide` a frame is planned and nothing is drawn; the decisions are the same. A frame may
 /// also be planned while its pictures are left for later: a sprite that was planned but not drawn is drawn,
