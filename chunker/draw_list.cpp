@@ -31,7 +31,7 @@ class PartAssembly {
  public:
   PartAssembly(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view,
                const Shader& shader, bool flat)
-      : view_(view), shader_(shader), vertices_(frame, part, view), flat_(flat) {
+      : view_(view), shader_(shader), vertices_(frame, part, view, shader), flat_(flat) {
     two_sided_ = part.material >= 0 && frame.scene->materials[part.material].two_sided;
     front_is_positive_ = view.mirrored != vertices_.mirrored();
     backs_ = two_sided_ && shader.lit && !flat_;
@@ -40,12 +40,7 @@ class PartAssembly {
       attributes_.resize(static_cast<std::size_t>(vertices_.size()) * (backs_ ? 2 : 1) * shader.layout.count);
   }
 
-  void run_vertices() {
-    tbb::parallel_for(tbb::blocked_range<int>(0, vertices_.size(), kVerticesPerJob),
-                      [this](const auto& range) {
-                        for (int i = range.begin(); i != range.end(); ++i) run_vertex(i);
-                      });
-  }
+  void run_vertices() { vertices_.skinned() ? run_vertices<true>() : run_vertices<false>(); }
 
   std::vector<Block> run_triangles() const {
     const int count = vertices_.mesh().triangle_count();
@@ -68,11 +63,20 @@ class PartAssembly {
  private:
   using Corners = std::array<std::uint32_t, 3>;
 
+  template <bool kSkinned>
+  void run_vertices() {
+    tbb::parallel_for(tbb::blocked_range<int>(0, vertices_.size(), kVerticesPerJob),
+                      [this](const auto& range) {
+                        for (int i = range.begin(); i != range.end(); ++i) run_vertex<kSkinned>(i);
+                      });
+  }
+
+  template <bool kSkinned>
   void run_vertex(int i) {
-    projected_[i] = project(view_, vertices_.sprite_point(i));
+    projected_[i] = project(view_, vertices_.sprite_point<kSkinned>(i));
     const int count = shader_.layout.count;
     if (flat_ || count == 0) return;
-    ShadePoint point = vertices_.shade_point(i);
+    ShadePoint point = vertices_.shade_point<kSkinned>(i);
     write_attributes(shader_, point, &attributes_[static_cast<std::size_t>(i) * count]);
     if (!backs_) return;
     point.normal = -point.normal;
@@ -192,6 +196,14 @@ class PartAssembly {
   std::vector<Float4> attributes_;
 };
 
+/// Lights are not looked at for surfaces that show none.
+bool any_lit(const layers::Scene& scene, std::span<const int> parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](int part) {
+    const int material = scene.parts[part].material;
+    return material < 0 || !scene.materials[material].unlit;
+  });
+}
+
 void append(PartAssembly& assembly, std::vector<Block> blocks, std::uint32_t batch, DrawList& list) {
   std::vector<Float4>& attributes = list.batches[batch].attributes;
   const int count = list.batches[batch].shader.layout.count;
@@ -219,7 +231,7 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
   TALISMAN_CHECK(frame.scene == &prepared.scene());
   const layers::Scene& scene = *frame.scene;
   list.size_px = placement.empty() ? layers::ivec2{0, 0} : placement.size_px;
-  list.lights = light_set(frame, inputs);
+  if (any_lit(scene, parts)) list.lights = light_set(frame, inputs);
   list.term = inputs.term;
   list.reflection = {inputs.reflection, inputs.reflection_from_screen * placement.screen_from_sprite};
   list.batches.reserve(parts.size());

@@ -231,46 +231,6 @@ bool moves(const Scene& scene, const Part& part) {
 
 }  // namespace
 
-std::string_view name(Effect effect) {
-  switch (effect) {
-    case Effect::Texture:
-      return "texture";
-    case Effect::MipFilter:
-      return "mip_filter";
-    case Effect::Lighting:
-      return "lighting";
-    case Effect::SpecularHighlight:
-      return "specular_highlight";
-    case Effect::Translucency:
-      return "translucency";
-    case Effect::Skinning:
-      return "skinning";
-    case Effect::LayerResolution:
-      return "layer_resolution";
-    case Effect::MotionBlur:
-      return "motion_blur";
-    case Effect::SpriteCompression:
-      return "sprite_compression";
-    case Effect::VisibilitySort:
-      return "visibility_sort";
-    case Effect::ColorWarp:
-      return "color_warp";
-    case Effect::ShadowMap:
-      return "shadow_map";
-    case Effect::ShadowLayer:
-      return "shadow_layer";
-    case Effect::SpecularLayer:
-      return "specular_layer";
-    case Effect::ReflectionMap:
-      return "reflection_map";
-    case Effect::ReflectionLayer:
-      return "reflection_layer";
-    case Effect::TextureLayers:
-      return "texture_layers";
-  }
-  return "?";
-}
-
 bool calls_for_visibility_sort(std::span<const Layer> layers) {
   for (const Layer& layer : layers)
     if (first_rival(layers, layer)) return true;

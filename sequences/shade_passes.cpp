@@ -9,6 +9,7 @@
 
 #include "chunker/mirror.h"
 #include "layers/animation.h"
+#include "layers/built_effects.h"
 #include "sequences/step.h"
 
 namespace talisman::sequences {
@@ -26,11 +27,17 @@ using layers::LayerKind;
 using layers::SceneFrame;
 using layers::SpritePlacement;
 
+/// A term whose effect the build leaves out is none of a layer's.
+constexpr bool kShadows = layers::is_built(layers::Effect::ShadowMap);
+constexpr bool kMirrors = layers::is_built(layers::Effect::ReflectionMap);
+constexpr bool kTextureLayers = layers::is_built(layers::Effect::TextureLayers);
+
 ShadeTerm term_of(const Layer& layer) {
   switch (layer.kind) {
     case LayerKind::Geometry:
-      if (layer.factored.second_texture) return ShadeTerm::Texture1;
-      return layer.factored.specular ? ShadeTerm::Base : ShadeTerm::Full;
+      if (kTextureLayers && layer.factored.second_texture) return ShadeTerm::Texture1;
+      return layers::is_built(layers::Effect::SpecularLayer) && layer.factored.specular ? ShadeTerm::Base
+                                                                                        : ShadeTerm::Full;
     case LayerKind::Shadow:
       return ShadeTerm::Shadow;
     case LayerKind::Specular:
@@ -43,7 +50,7 @@ ShadeTerm term_of(const Layer& layer) {
   return ShadeTerm::Full;
 }
 
-bool any_shadows(const Pipeline& pipeline) { return !pipeline.layers.casting_parts.empty(); }
+bool any_shadows(const Pipeline& pipeline) { return kShadows && !pipeline.layers.casting_parts.empty(); }
 
 std::int64_t casting_polygons(const Pipeline& pipeline) {
   std::int64_t polygons = 0;
@@ -142,10 +149,11 @@ chunker::RenderResult draw_term(const Pipeline& pipeline, ShadowMapStore& maps,
   inputs.term = term;
   inputs.light = layer.light;
   std::vector<const chunker::ShadowMap*> by_light;
-  if (layer.holds.shadows) by_light = maps_for(pipeline, maps, frame, shadow_lights(pipeline, layer));
+  if (kShadows && layer.holds.shadows)
+    by_light = maps_for(pipeline, maps, frame, shadow_lights(pipeline, layer));
   inputs.shadow_maps = by_light;
   Mirrored mirrored;
-  if (layer.holds.reflection) {
+  if (kMirrors && layer.holds.reflection) {
     mirrored = draw_mirrored(pipeline, maps, prepared, frame, layer, placement);
     inputs.reflection = &mirrored.picture.sprite;
     inputs.reflection_from_screen = mirrored.reflection_from_screen;
@@ -170,7 +178,8 @@ std::vector<ShadowMapKey> shadow_map_keys(const Pipeline& pipeline, const SceneF
 
 std::vector<int> shadow_lights(const Pipeline& pipeline, const Layer& layer) {
   std::vector<int> lights;
-  const bool looks_up = layer.holds.shadows || (layer.holds.reflection && any_shadows(pipeline));
+  const bool looks_up =
+      kShadows && (layer.holds.shadows || (kMirrors && layer.holds.reflection && any_shadows(pipeline)));
   for (std::size_t i = 0; looks_up && i < pipeline.scene.lights.size(); ++i)
     if (pipeline.scene.lights[i].casts_shadow && (layer.light < 0 || layer.light == static_cast<int>(i)))
       lights.push_back(static_cast<int>(i));
@@ -187,7 +196,7 @@ ShadeCounters& ShadeCounters::operator+=(const ShadeCounters& o) {
 
 void ShadePlan::add_render(const Pipeline& pipeline, const Layer& layer,
                            const std::vector<ShadowMapKey>& keys, ShadeCounters& counters) {
-  counters.reflections_drawn += layer.holds.reflection;
+  counters.reflections_drawn += kMirrors && layer.holds.reflection;
   for (const int light : shadow_lights(pipeline, layer)) {
     drawn_.resize(keys.size());
     if (!drawn_[light].world_from_casters.empty() && drawn_[light] == keys[light]) {
@@ -243,7 +252,7 @@ chunker::RenderResult draw_all_in_one_pass(const Pipeline& pipeline, ShadowMapSt
 SpriteMultipliers multipliers_at(const Layer& layer, double time_s) {
   SpriteMultipliers m;
   if (!layer.fade.values.empty()) m.alpha = static_cast<float>(layers::value_at(layer.fade, time_s));
-  if (!layer.gain.values.empty())
+  if (kTextureLayers && !layer.gain.values.empty())
     m.color = layers::vec3(static_cast<float>(layers::value_at(layer.gain, time_s)));
   m.alpha = std::clamp(m.alpha, 0.0f, 1.0f);
   m.color = glm::clamp(m.color, 0.0f, 1.0f);
