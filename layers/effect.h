@@ -20,7 +20,7 @@ namespace talisman::layers {
 
 enum class Effect {
   Texture,            ///< some drawn part has a textured material
-  MipFilter,          ///< the same textures, filtered when minified
+  MipFilter,          ///< the same textures, filtered when minified, unless the run asks for none
   Lighting,           ///< some drawn part is lit: normals and lights are evaluated
   SpecularHighlight,  ///< some lit material has specular > 0
   Translucency,       ///< opacity < 1 or a texture with alpha
