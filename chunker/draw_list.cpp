@@ -40,7 +40,13 @@ class PartAssembly {
       attributes_.resize(static_cast<std::size_t>(vertices_.size()) * (backs_ ? 2 : 1) * shader.layout.count);
   }
 
-  void run_vertices() { vertices_.skinned() ? run_vertices<true>() : run_vertices<false>(); }
+  void run_vertices() {
+    const bool cut = layers::is_built(layers::Effect::ReflectionMap) && view_.region.kept;
+    if (vertices_.skinned())
+      cut ? run_vertices<true, true>() : run_vertices<true, false>();
+    else
+      cut ? run_vertices<false, true>() : run_vertices<false, false>();
+  }
 
   std::vector<Block> run_triangles() const {
     const int count = vertices_.mesh().triangle_count();
@@ -63,17 +69,20 @@ class PartAssembly {
  private:
   using Corners = std::array<std::uint32_t, 3>;
 
-  template <bool kSkinned>
+  template <bool kSkinned, bool kCut>
   void run_vertices() {
     tbb::parallel_for(tbb::blocked_range<int>(0, vertices_.size(), kVerticesPerJob),
                       [this](const auto& range) {
-                        for (int i = range.begin(); i != range.end(); ++i) run_vertex<kSkinned>(i);
+                        for (int i = range.begin(); i != range.end(); ++i) run_vertex<kSkinned, kCut>(i);
                       });
   }
 
-  template <bool kSkinned>
+  template <bool kSkinned, bool kCut>
   void run_vertex(int i) {
-    projected_[i] = project(view_, vertices_.sprite_point<kSkinned>(i));
+    const dvec3 place = vertices_.sprite_point<kSkinned>(i);
+    projected_[i] = project(view_, place);
+    if constexpr (kCut)
+      if (view_.region.kept->height(place) < 0) projected_[i].flags |= kCutAway;
     const int count = shader_.layout.count;
     if (flat_ || count == 0) return;
     ShadePoint point = vertices_.shade_point<kSkinned>(i);
@@ -222,6 +231,24 @@ void append(PartAssembly& assembly, std::vector<Block> blocks, std::uint32_t bat
   }
 }
 
+/// The first of `choices` that names the part, or null.
+template <typename Choice>
+const Choice* choice_of(std::span<const Choice> choices, int part) {
+  const auto names = [part](const Choice& choice) {
+    return choice.parts.empty() || std::binary_search(choice.parts.begin(), choice.parts.end(), part);
+  };
+  const auto found = std::find_if(choices.begin(), choices.end(), names);
+  return found == choices.end() ? nullptr : &*found;
+}
+
+PartInputs own_inputs(const ShadeInputs& inputs, int part, const DrawList& list) {
+  PartInputs own;
+  if (const Reflection* reflection = choice_of(inputs.reflections, part))
+    own.reflection = &list.reflections[reflection - inputs.reflections.data()];
+  if (const TextureBlend* blend = choice_of(inputs.texture_blends, part)) own.texture_blend = blend->factors;
+  return own;
+}
+
 }  // namespace
 
 void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& frame,
@@ -233,15 +260,17 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
   list.size_px = placement.empty() ? layers::ivec2{0, 0} : placement.size_px;
   if (any_lit(scene, parts)) list.lights = light_set(frame, inputs);
   list.term = inputs.term;
-  list.reflection = {inputs.reflection, inputs.reflection_from_screen * placement.screen_from_sprite};
+  for (const Reflection& r : inputs.reflections)
+    list.reflections.push_back({r.picture, r.picture_from_screen * placement.screen_from_sprite});
   list.batches.reserve(parts.size());
-  const auto view = sprite_view(frame, display_px, placement);
+  const auto view = sprite_view(frame, display_px, placement, inputs.kept);
   for (const int index : parts) {
     const layers::Part& part = scene.parts[index];
     const layers::Mesh& mesh = scene.meshes[part.mesh];
     list.polygons_in += mesh.triangle_count();
     if (!view) continue;
-    const Shader shader = make_shader(prepared, part, list.lights, options, inputs, &list.reflection);
+    const Shader shader =
+        make_shader(prepared, part, list.lights, options, inputs, own_inputs(inputs, index, list));
     if (shader.opacity == 0) continue;
     list.batches.push_back({shader, {}});
     const bool flat = shader.lit && (options.shading == Shading::Flat || mesh.normals.empty());

@@ -14,19 +14,10 @@
 #include <vector>
 
 #include "chunker/clip.h"
+#include "chunker/rows34.h"
 #include "chunker/shade.h"
 
 namespace talisman::chunker {
-
-/// Rows of a 3×4 matrix.
-struct Rows34 {
-  layers::dvec4 row[3];
-  layers::dvec3 operator()(const layers::dvec3& p) const {
-    return {row[0].x * p.x + row[0].y * p.y + row[0].z * p.z + row[0].w,
-            row[1].x * p.x + row[1].y * p.y + row[1].z * p.z + row[1].w,
-            row[2].x * p.x + row[2].y * p.y + row[2].z * p.z + row[2].w};
-  }
-};
 
 Rows34 operator*(const Rows34& outer, const layers::dmat4& inner);
 
@@ -39,11 +30,13 @@ struct SpriteView {
   bool mirrored = false;  ///< the placement, or else the camera, turns the picture over
 };
 
-/// Empty when the placement is: no texels, or a map that is singular or not finite.
+/// Empty when the placement is: no texels, or a map that is singular or not finite. `kept`: the half-space of
+/// the world that is drawn; one that is not finite or has no direction cuts nothing.
 std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, layers::ivec2 display_px,
-                                      const layers::SpritePlacement& placement);
+                                      const layers::SpritePlacement& placement,
+                                      const std::optional<HalfSpace>& kept = std::nullopt);
 
-/// Why a vertex may need more than drawing. A triangle whose corners share one of the first five lies wholly
+/// Why a vertex may need more than drawing. A triangle whose corners share one of kOutsideFlags lies wholly
 /// outside.
 enum VertexFlag : std::uint8_t {
   kLeftOfSprite = 1,
@@ -53,10 +46,11 @@ enum VertexFlag : std::uint8_t {
   kBeforeNear = 16,
   kOutsideGuard = 32,
   kNotFinite = 64,
+  kCutAway = 128,  ///< beyond ClipRegion::kept
 };
 inline constexpr std::uint8_t kOutsideFlags =
-    kLeftOfSprite | kRightOfSprite | kAboveSprite | kBelowSprite | kBeforeNear;
-inline constexpr std::uint8_t kClipFlags = kBeforeNear | kOutsideGuard;
+    kLeftOfSprite | kRightOfSprite | kAboveSprite | kBelowSprite | kBeforeNear | kCutAway;
+inline constexpr std::uint8_t kClipFlags = kBeforeNear | kOutsideGuard | kCutAway;
 
 struct ProjectedVertex {
   std::int32_t x = 0, y = 0;  ///< 1/256 texel; valid without kClipFlags and kNotFinite
@@ -64,6 +58,7 @@ struct ProjectedVertex {
   std::uint8_t flags = 0;
 };
 
+/// Never kCutAway: few views cut, so who draws one that does asks ClipRegion::kept.
 ProjectedVertex project(const SpriteView& view, const layers::dvec3& point);
 
 /// Of a vertex made by clip_triangle: it lies on the border of the region up to rounding; this puts it there.

@@ -3,13 +3,14 @@
 
 /// Which effects does this build have? (What that is for: layers/effect.h.)
 ///
-/// A header of its own, so that a build without an effect compiles anew only the files that ask.
+/// A header of its own, and known only to the files that ask (EFFECTS in their CMakeLists.txt), so that a build
+/// without an effect compiles nothing else anew.
 
 #include "layers/effect.h"
 
 // The names of the effects that are left out, separated by commas; from CMake's TALISMAN_WITHOUT.
 #ifndef TALISMAN_WITHOUT
-#define TALISMAN_WITHOUT ""
+#error "files that ask which effects are built are listed under EFFECTS in the CMakeLists.txt of their folder"
 #endif
 
 namespace talisman::layers {

@@ -8,6 +8,7 @@
 
 #include "layers/effects.h"
 #include "regulator/profile.h"
+#include "sequences/missing_effects.h"
 
 namespace talisman::sequences {
 
@@ -97,8 +98,9 @@ std::string inspection_text(const Sequence& s) {
     text += line("; %d parts are in no layer and are not drawn", s.layers.unassigned_parts);
   text += "\n\n  effect               called  why\n";
   for (const layers::EffectCall& call : effects_of(s))
-    text += line("  %-20s %-6s  %s\n", std::string(layers::name(call.effect)).c_str(),
-                 call.called ? "yes" : "no", call.why.c_str());
+    text += line("  %-20s %-6s  %s%s\n", std::string(layers::name(call.effect)).c_str(),
+                 call.called ? "yes" : "no", call.why.c_str(),
+                 has_effect(call.effect) ? "" : " (not in this build)");
   return text;
 }
 
@@ -114,7 +116,8 @@ std::string inspection_json(const Sequence& s) {
                           {"resolution_scale", layer.preferences.resolution_scale}});
   Json effects = Json::object();
   for (const layers::EffectCall& call : effects_of(s))
-    effects[std::string(layers::name(call.effect))] = {{"called", call.called}, {"why", call.why}};
+    effects[std::string(layers::name(call.effect))] = {
+        {"called", call.called}, {"why", call.why}, {"built", has_effect(call.effect)}};
   const Json json = {{"schema", "talisman.inspect/1"},
                      {"sequence", s.name},
                      {"file", s.file},

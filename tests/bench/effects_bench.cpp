@@ -2,8 +2,8 @@
 
 /// What does an effect cost that a scene does not call for? One process of that measurement: a sequence that
 /// calls for every effect (tests/support/sequences.h), one effect taken away from it
-/// (sequences/without_effect.h), is planned, drawn and composited on one thread. tests/bench/effect_builds runs
-/// it in the normal build and in one that was configured without the effect, and compares.
+/// (sequences/without_effect.h), is planned, drawn and composited on one thread. tests/bench/effect_builds
+/// runs it in the normal build and in one that was configured without the effect, and compares.
 ///
 ///   effects_bench EFFECT|none [--frames N] [--repeats N] [--size WxH]
 ///
