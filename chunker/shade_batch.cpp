@@ -218,11 +218,13 @@ HWY_INLINE void interpolate(const Shader& shader, const Interpolator& t, ShadeBl
 void Interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   interpolate<Footprint::None>(shader, t, block);
 }
-void InterpolateBilinear(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
-  interpolate<Footprint::Finest>(shader, t, block);
+void InterpolateBilinear([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                         [[maybe_unused]] ShadeBlock& block) {
+  if constexpr (layers::is_built(layers::Effect::Texture)) interpolate<Footprint::Finest>(shader, t, block);
 }
-void InterpolateTrilinear(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
-  interpolate<Footprint::Level>(shader, t, block);
+void InterpolateTrilinear([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                          [[maybe_unused]] ShadeBlock& block) {
+  if constexpr (layers::is_built(layers::Effect::Texture)) interpolate<Footprint::Level>(shader, t, block);
 }
 
 /// The Phong lobe lane by lane: it needs more precision than a float has.

@@ -3,33 +3,45 @@
 
 /// Which effects does this build have? (What that is for: layers/effect.h.)
 ///
-/// A header of its own, and known only to the files that ask (EFFECTS in their CMakeLists.txt), so that a build
-/// without an effect compiles nothing else anew.
+/// Each file that asks says in the CMakeLists.txt of its folder, under EFFECTS, for which effects it does,
+/// and is told of no others. So it is known which files an effect is decided on in, and a build without it
+/// compiles only those anew.
 
 #include "layers/effect.h"
 
-// The names of the effects that are left out, separated by commas; from CMake's TALISMAN_WITHOUT.
-#ifndef TALISMAN_WITHOUT
+// Names separated by commas, from CMake: the effects that this file may ask for, and those of them that are
+// left out.
+#ifndef TALISMAN_ASKS
 #error "files that ask which effects are built are listed under EFFECTS in the CMakeLists.txt of their folder"
+#define TALISMAN_ASKS ""
+#define TALISMAN_WITHOUT ""
 #endif
 
 namespace talisman::layers {
 
-/// All effects but those in a list of names like "shadow_map,texture".
-constexpr EffectSet effects_without(std::string_view names) {
-  EffectSet built{};
-  built.fill(true);
+/// Is `name` one of the names in a list like "shadow_map,texture"?
+constexpr bool is_listed(std::string_view name, std::string_view names) {
   while (!names.empty()) {
     const std::string_view first = names.substr(0, names.find(','));
+    if (first == name) return true;
     names.remove_prefix(first.size() < names.size() ? first.size() + 1 : first.size());
-    for (std::size_t e = 0; e < built.size(); ++e) built[e] = built[e] && kEffectNames[e] != first;
   }
+  return false;
+}
+
+/// All effects but those in a list.
+constexpr EffectSet effects_without(std::string_view names) {
+  EffectSet built{};
+  for (const Effect effect : kAllEffects)
+    built[static_cast<std::size_t>(effect)] = !is_listed(name(effect), names);
   return built;
 }
 
-inline constexpr EffectSet kBuiltEffects = effects_without(TALISMAN_WITHOUT);
-
-constexpr bool is_built(Effect effect) { return kBuiltEffects[static_cast<std::size_t>(effect)]; }
+/// A constant; asking for an effect that the file is not told of does not compile.
+consteval bool is_built(Effect effect) {
+  if (!is_listed(name(effect), TALISMAN_ASKS)) throw "list this effect for this file under EFFECTS";
+  return !is_listed(name(effect), TALISMAN_WITHOUT);
+}
 
 /// A value that only an effect gives a meaning. In a build without the effect it is the constant `kAbsent`
 /// and takes no room, so that whatever depends on it folds away.

@@ -67,6 +67,8 @@ Memory memory_of(const layers::Scene& scene) {
   return memory;
 }
 
+bool has_effect(layers::Effect effect) { return built_effects()[static_cast<std::size_t>(effect)]; }
+
 std::string line(const char* pattern, auto... values) {
   char text[600];
   std::snprintf(text, sizeof text, pattern, values...);

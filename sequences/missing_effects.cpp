@@ -11,8 +11,8 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr bool kHasAll =
-    std::all_of(layers::kBuiltEffects.begin(), layers::kBuiltEffects.end(), [](bool built) { return built; });
+constexpr layers::EffectSet kBuilt = layers::effects_without(TALISMAN_WITHOUT);
+constexpr bool kHasAll = std::all_of(kBuilt.begin(), kBuilt.end(), [](bool built) { return built; });
 
 }  // namespace
 
@@ -28,10 +28,10 @@ void require_built_effects(const Sequence& sequence, const Settings& settings) {
   if constexpr (kHasAll) return;
   const auto table =
       layers::effects_called_for(*sequence.scene, sequence.layers.layers, run_effects(settings));
-  if (const std::string missing = missing_effect(table, layers::kBuiltEffects); !missing.empty())
+  if (const std::string missing = missing_effect(table, kBuilt); !missing.empty())
     throw InputError(missing, sequence.name);
 }
 
-bool has_effect(layers::Effect effect) { return layers::is_built(effect); }
+layers::EffectSet built_effects() { return kBuilt; }
 
 }  // namespace talisman::sequences

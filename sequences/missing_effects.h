@@ -22,7 +22,7 @@ std::string missing_effect(std::span<const layers::EffectCall> table, const laye
 /// Throws InputError, "NAME: " before the text above, if the run calls for an effect that this build lacks.
 void require_built_effects(const Sequence& sequence, const Settings& settings);
 
-/// Does this build have the effect?
-bool has_effect(layers::Effect effect);
+/// The effects that this build has.
+layers::EffectSet built_effects();
 
 }  // namespace talisman::sequences

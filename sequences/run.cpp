@@ -12,7 +12,6 @@
 
 #include "sequences/frame_writer.h"
 #include "sequences/line_file.h"
-#include "sequences/missing_effects.h"
 #include "sequences/overlay.h"
 #include "sequences/separate.h"
 
@@ -260,7 +259,6 @@ class Runner {
 
 RunOutcome run(const Sequence& sequence, const Settings& settings, const RunOptions& options,
                const std::atomic<bool>& stop) {
-  require_built_effects(sequence, settings);
   Runner runner(sequence, settings, options);
   Progress progress(options.progress, options.plan_only ? "planned" : "rendered",
                     options.last_frame - options.first_frame + 1, runner.frames_kept());
