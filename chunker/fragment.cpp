@@ -55,12 +55,12 @@ void FragmentBuffer::clear(const LatticeBox& box, int max_fragments, MergeTolera
   pool_.clear();
   free_ = -1;
   live_ = 0;
+  translucent_ = false;
   limit_ = max_fragments;
   merge_ = merge;
 }
 
-Added FragmentBuffer::add_to_busy(int texel, const Fragment& fragment) {
-  const bool whole = fragment.mask == kFullMask && fragment.opaque();
+Added FragmentBuffer::add_to_busy(int texel, const Fragment& fragment, bool whole) {
   if (whole && (!has_base(texel) || nearer_samples(fragment.depth, base_[texel].depth) == kFullMask)) {
     set_base(texel, fragment);
     if (first_[texel] >= 0) drop_hidden(texel);
@@ -117,6 +117,7 @@ std::int32_t FragmentBuffer::allocate() {
 }
 
 Float4 FragmentBuffer::resolve_busy(int texel) const {
+  if (!layers::is_built(layers::Effect::Translucency) || !translucent_) return resolve_opaque(texel);
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
     if (!pool_[i].opaque()) return resolve_translucent(texel);
   return resolve_opaque(texel);

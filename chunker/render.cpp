@@ -2,6 +2,7 @@
 #include "chunker/render.h"
 
 #include <algorithm>
+#include <map>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -10,6 +11,7 @@
 #include "chunker/bin.h"
 #include "chunker/clip.h"
 #include "chunker/raster.h"
+#include "layers/built_effects.h"
 #include "layers/check.h"
 
 namespace talisman::chunker {
@@ -27,25 +29,51 @@ void check_options(const layers::SpritePlacement& placement, const RenderOptions
   TALISMAN_CHECK(options.max_anisotropy >= 1 && options.max_anisotropy <= 16);
 }
 
-std::vector<int> chunks_with_work(const Bins& bins) {
-  std::vector<int> chunks;
-  for (int c = 0; c + 1 < static_cast<int>(bins.first.size()); ++c)
-    if (!bins.of(c).empty()) chunks.push_back(c);
-  return chunks;
+/// The chunks in which there is something to draw.
+struct Work {
+  Bins bins;
+  std::vector<int> places;
+};
+
+Work set_up(const PreparedScene& prepared, const layers::SceneFrame& frame, std::span<const int> parts,
+            layers::ivec2 display_px, const layers::SpritePlacement& placement, const RenderOptions& options,
+            const ShadeInputs& inputs, DrawList& list) {
+  check_options(placement, options);
+  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
+  Work work{bin_triangles(list.triangles, list.size_px), {}};
+  for (int c = 0; c < work.bins.count(); ++c)
+    if (!work.bins.of(c).empty()) work.places.push_back(c);
+  return work;
 }
 
-/// Draws every place in `places`; finished chunks go to `take(index of the place, chunk)`.
+/// The textures that parts use, and whether their coarser levels are needed: everywhere where they are
+/// filtered, and where a surface without coordinates shows the mean.
+std::map<int, bool> textures_of(const layers::Scene& scene, bool filtered) {
+  std::map<int, bool> used;
+  for (const layers::Part& part : scene.parts) {
+    if (part.material < 0) continue;
+    const bool coarser = filtered || scene.meshes[part.mesh].uvs.empty();
+    const layers::Material& material = scene.materials[part.material];
+    for (const int texture : {material.texture, material.texture2})
+      if (texture >= 0 && texture < static_cast<int>(scene.textures.size()))
+        used[texture] = used[texture] || coarser;
+  }
+  return used;
+}
+
+/// Draws every place; finished chunks go to `take(index of the place, chunk)`.
 template <typename Take>
-RenderCounters draw_chunks(const DrawList& list, const Bins& bins, const std::vector<int>& places,
-                           const RenderOptions& options, LinearImage* linear, const Take& take) {
+RenderCounters draw_chunks(const DrawList& list, const Work& work, const RenderOptions& options,
+                           LinearImage* linear, const Take& take) {
+  const std::vector<int>& places = work.places;
+  const int columns = work.bins.chunks.x;
   tbb::enumerable_thread_specific<ChunkRenderer> renderers(
       [&] { return ChunkRenderer(list, options, linear); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
     ChunkRenderer& renderer = renderers.local();
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const layers::ivec2 origin(places[i] % bins.chunks.x * kChunkSize,
-                                 places[i] / bins.chunks.x * kChunkSize);
-      take(i, renderer.draw(bins.of(places[i]), origin));
+      const layers::ivec2 origin(places[i] % columns * kChunkSize, places[i] / columns * kChunkSize);
+      take(i, renderer.draw(work.bins.of(places[i]), origin));
     }
   });
   RenderCounters counters;
@@ -74,20 +102,17 @@ RenderCounters& RenderCounters::operator+=(const RenderCounters& o) {
   return *this;
 }
 
-PreparedScene::PreparedScene(const layers::Scene& scene) : impl_(std::make_unique<Impl>()) {
+PreparedScene::PreparedScene(const layers::Scene& scene, const RenderOptions& options)
+    : impl_(std::make_unique<Impl>()) {
   impl_->scene = &scene;
+  if (!layers::is_built(layers::Effect::Texture) || scene.textures.empty()) return;
   impl_->pyramids.resize(scene.textures.size());
-  std::vector<int> used;
-  for (const layers::Part& part : scene.parts)
-    if (part.material >= 0) {
-      used.push_back(scene.materials[part.material].texture);
-      used.push_back(scene.materials[part.material].texture2);
-    }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::erase_if(used, [&](int t) { return t < 0 || t >= static_cast<int>(scene.textures.size()); });
-  tbb::parallel_for(std::size_t{0}, used.size(), [&](std::size_t i) {
-    impl_->pyramids[used[i]] = build_pyramid(scene.textures[used[i]]);
+  const bool filtered = layers::is_built(layers::Effect::MipFilter) && options.mipmaps &&
+                        options.filter == TextureFilter::Trilinear;
+  const std::map<int, bool> used = textures_of(scene, filtered);
+  const std::vector<std::pair<int, bool>> list(used.begin(), used.end());
+  tbb::parallel_for(std::size_t{0}, list.size(), [&](std::size_t i) {
+    impl_->pyramids[list[i].first] = build_pyramid(scene.textures[list[i].first], list[i].second);
   });
 }
 
@@ -107,16 +132,13 @@ RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& fra
                     std::span<const int> parts, layers::ivec2 display_px,
                     const layers::SpritePlacement& placement, const RenderOptions& options,
                     const ShadeInputs& inputs) {
-  check_options(placement, options);
   DrawList list;
-  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
-  const Bins bins = bin_triangles(list.triangles, list.size_px);
-  const std::vector<int> places = chunks_with_work(bins);
-  std::vector<Chunk> chunks(places.size());
+  const Work work = set_up(prepared, frame, parts, display_px, placement, options, inputs, list);
+  std::vector<Chunk> chunks(work.places.size());
   RenderResult result;
-  result.counters = draw_chunks(list, bins, places, options, nullptr,
+  result.counters = draw_chunks(list, work, options, nullptr,
                                 [&](std::size_t i, const Chunk& chunk) { chunks[i] = chunk; });
-  result.sprite = Sprite::assemble(list.size_px, places, chunks);
+  result.sprite = Sprite::assemble(list.size_px, work.places, chunks);
   result.counters.chunks_rendered = result.sprite.stored_chunks();
   result.counters.chunks_clear = result.sprite.clear_chunks();
   return result;
@@ -126,18 +148,14 @@ LinearImage render_linear(const PreparedScene& prepared, const layers::SceneFram
                           std::span<const int> parts, layers::ivec2 display_px,
                           const layers::SpritePlacement& placement, const RenderOptions& options,
                           const ShadeInputs& inputs) {
-  check_options(placement, options);
   DrawList list;
-  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
-  const Bins bins = bin_triangles(list.triangles, list.size_px);
-  const std::vector<int> places = chunks_with_work(bins);
+  const Work work = set_up(prepared, frame, parts, display_px, placement, options, inputs, list);
   LinearImage image;
   image.size_px = list.size_px;
   image.texels.resize(static_cast<std::size_t>(list.size_px.x) * list.size_px.y);
-  image.counters = draw_chunks(list, bins, places, options, &image, [](std::size_t, const Chunk&) {});
-  image.counters.chunks_rendered = static_cast<std::int64_t>(places.size());
-  image.counters.chunks_clear =
-      static_cast<std::int64_t>(bins.first.size()) - 1 - image.counters.chunks_rendered;
+  image.counters = draw_chunks(list, work, options, &image, [](std::size_t, const Chunk&) {});
+  image.counters.chunks_rendered = static_cast<std::int64_t>(work.places.size());
+  image.counters.chunks_clear = work.bins.count() - image.counters.chunks_rendered;
   return image;
 }
 

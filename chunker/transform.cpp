@@ -51,6 +51,23 @@ bool finite(const Affine2& m) {
          std::isfinite(m.tx) && std::isfinite(m.ty);
 }
 
+/// The half-space of the world as one of sprite points; empty where there is none.
+std::optional<HalfSpace> of_sprite_points(const HalfSpace& world, const Rows34& sprite_from_world) {
+  dmat3 linear;
+  dvec3 shift;
+  for (int r = 0; r < 3; ++r) {
+    const dvec4& row = sprite_from_world.row[r];
+    for (int c = 0; c < 3; ++c) linear[c][r] = row[c];
+    shift[r] = row.w;
+  }
+  HalfSpace kept;
+  kept.normal = glm::transpose(glm::inverse(linear)) * world.normal;
+  kept.offset = world.offset + glm::dot(kept.normal, shift);
+  const double length = glm::length(kept.normal);
+  if (!(length > 0 && std::isfinite(length) && std::isfinite(kept.offset))) return std::nullopt;
+  return kept;
+}
+
 /// Nearest integer, halves up, without a library call; |v| < 2³¹.
 std::int32_t snap(double texels) {
   const double v = texels * kSubpixel + 0.5;
@@ -72,7 +89,8 @@ Rows34 operator*(const Rows34& outer, const dmat4& inner) {
 }
 
 std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, ivec2 display_px,
-                                      const layers::SpritePlacement& placement) {
+                                      const layers::SpritePlacement& placement,
+                                      const std::optional<HalfSpace>& kept) {
   if (placement.empty() || !finite(placement.screen_from_sprite)) return std::nullopt;
   const auto sprite_from_screen = layers::inverse(placement.screen_from_sprite);
   if (!sprite_from_screen || !finite(*sprite_from_screen)) return std::nullopt;
@@ -81,6 +99,7 @@ std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, ivec2 dis
   view.sprite_from_world =
       sprite_from_clip(display_px, *sprite_from_screen) * layers::clip_from_world(frame.camera, display_px);
   view.region.near_w = std::max(frame.camera.near_m, kSmallestNear);
+  if (kept) view.region.kept = of_sprite_points(*kept, view.sprite_from_world);
   view.region.center_px = {placement.size_px.x * 0.5, placement.size_px.y * 0.5};
   view.eye = dvec3(frame.camera.world_from_camera[3]);
   view.mirrored = (placement.screen_from_sprite.determinant() < 0) !=
@@ -127,11 +146,13 @@ ProjectedVertex project_cut(const SpriteView& view, dvec3 p) {
   return v;
 }
 
-PartVertices::PartVertices(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view)
+PartVertices::PartVertices(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view,
+                           const Shader& shader)
     : mesh_(&frame.scene->meshes[part.mesh]) {
+  const bool is_skinned = layers::is_built(layers::Effect::Skinning) && part.skin >= 0;
   const dmat4 world_from_source =
-      part.skin < 0 && part.node >= 0 ? frame.world_from_node[part.node] : dmat4(1.0);
-  if (part.skin >= 0) {
+      !is_skinned && part.node >= 0 ? frame.world_from_node[part.node] : dmat4(1.0);
+  if (is_skinned) {
     world_ = layers::world_positions(frame, part);
     for (const dmat4& joint : layers::joint_palette(frame, part))
       joint_normals_.push_back(cofactors(dmat3(joint)));
@@ -141,12 +162,17 @@ PartVertices::PartVertices(const layers::SceneFrame& frame, const layers::Part& 
   for (int r = 0; r < 3; ++r) eye_from_source_.row[r].w -= view.eye[r];
   mirrored_ = glm::determinant(dmat3(world_from_source)) < 0;
   normal_from_mesh_ = cofactors(dmat3(world_from_source)) * (mirrored_ ? -1.0 : 1.0);
+  reads_position_ = shader.lit || shader.layout.position >= 0;
+  reads_normal_ = shader.lit && !mesh_->normals.empty();
+  reads_color_ = shader.layout.color >= 0 && !mesh_->colors.empty();
+  reads_uv_ = shader.layout.uv >= 0 && !mesh_->uvs.empty();
 }
 
+template <bool kSkinned>
 Float4 PartVertices::world_normal(int i) const {
   const dvec3 n(mesh_->normals[i]);
   dvec3 world(0);
-  if (joint_normals_.empty() || mesh_->joints.empty()) {
+  if (!kSkinned || joint_normals_.empty() || mesh_->joints.empty()) {
     world = normal_from_mesh_ * n;
   } else {
     for (int k = 0; k < 4; ++k)
@@ -157,14 +183,17 @@ Float4 PartVertices::world_normal(int i) const {
   return length > 0 && std::isfinite(length) ? float4(layers::vec3(world / length)) : splat(0);
 }
 
+template <bool kSkinned>
 ShadePoint PartVertices::shade_point(int i) const {
   ShadePoint point;
-  point.position = point.lit_at = float4(layers::vec3(eye_position(i)));
-  if (!mesh_->normals.empty()) point.normal = world_normal(i);
-  if (!mesh_->colors.empty()) point.vertex_color = float4(mesh_->colors[i], 1);
-  if (!mesh_->uvs.empty())
+  if (reads_position_) point.position = point.lit_at = float4(layers::vec3(eye_position<kSkinned>(i)));
+  if (reads_normal_) point.normal = world_normal<kSkinned>(i);
+  if (reads_color_) point.vertex_color = float4(mesh_->colors[i], 1);
+  if (reads_uv_)
     point.uv = Float4{usable_coordinate(mesh_->uvs[i].x), usable_coordinate(mesh_->uvs[i].y), 0, 0};
   return point;
 }
+template ShadePoint PartVertices::shade_point<true>(int i) const;
+template ShadePoint PartVertices::shade_point<false>(int i) const;
 
 }  // namespace talisman::chunker

@@ -16,7 +16,7 @@
 #include <cstdint>
 
 #include "chunker/float4.h"
-#include "chunker/shade.h"
+#include "chunker/interpolator.h"
 
 namespace talisman::chunker {
 

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <map>
 
+#include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/effects.h"
+#include "sequences/direct.h"
 #include "sequences/draw_instant.h"
 #include "sequences/extended_composite.h"
 #include "sequences/layer_planning.h"
@@ -120,11 +122,18 @@ std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineS
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
     SpriteMultipliers multipliers =
         multipliers_at(pipeline.layers.layers[layer], time_of(pipeline, report.frame));
-    multipliers.color *= layers::vec3(decision.shown_color);
+    if constexpr (layers::is_built(layers::Effect::ColorWarp))
+      multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
                      memory.placement.size_px, report.frame - memory.frame_rendered, multipliers});
   }
   return shown;
+}
+
+/// How the run compresses its sprites, or null.
+const chunker::CompressionOptions* compression_of(const Pipeline& pipeline) {
+  const bool called = layers::is_built(layers::Effect::SpriteCompression) && pipeline.settings.compression;
+  return called ? &*pipeline.settings.compression : nullptr;
 }
 
 /// Draws the sprites that this frame shows and the store does not hold yet.
@@ -143,9 +152,9 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
         draw_layer(pipeline, state.shadow_maps, prepared, as_of_now ? now : others.at(key),
                    pipeline.layers.layers[sprite.layer], memory.placement);
     const bool is_late = memory.frame_rendered != report.frame;
-    if (pipeline.settings.compression)
-      keep_compressed(sprite.layer, result.sprite, *pipeline.settings.compression, state.compressed,
-                      state.sprites, is_late ? nullptr : &*report.compression);
+    if (const chunker::CompressionOptions* compression = compression_of(pipeline))
+      keep_compressed(sprite.layer, result.sprite, *compression, state.compressed, state.sprites,
+                      is_late ? nullptr : &*report.compression);
     else
       state.sprites.put(sprite.layer, std::move(result.sprite));
     memory.drawn = true;
@@ -190,35 +199,23 @@ chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& 
   return model_chunk_reads(placed, pipeline.settings.view.display_px);
 }
 
-/// All parts in one pass of the renderer into one display-sized sprite: the picture without layers.
-chunker::CompositeResult draw_in_one_pass(const Pipeline& pipeline, const SceneFrame& scene_frame,
-                                          const chunker::PreparedScene& prepared, ShadowMapStore& maps,
-                                          chunker::RenderCounters& counters) {
-  SpritePlacement whole_display;
-  whole_display.size_px = pipeline.settings.view.display_px;
-  const chunker::RenderResult result =
-      draw_all_in_one_pass(pipeline, maps, prepared, scene_frame, whole_display);
-  counters += result.counters;
-  chunker::PlacedSprite placed;
-  placed.sprite = &result.sprite;
-  return chunker::composite({&placed, 1}, pipeline.settings.view.display_px, pipeline.scene.background);
-}
-
-void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
+void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
           const chunker::PreparedScene& prepared, FrameReport& report) {
   chunker::CompositeResult result;
   const Stopwatch render_watch;
   if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
-    result = draw_in_one_pass(pipeline, now, prepared, state.shadow_maps, report.render);
+    DirectPicture picture = draw_directly(authored, state.shadow_maps, prepared, now, report.frame);
+    result = std::move(picture.composite);
+    report.render += picture.render;
     report.times.render_ms = render_watch.ms();
   } else {
-    if (pipeline.settings.compression) report.compression.emplace();
+    if (compression_of(pipeline)) report.compression.emplace();
     draw_missing_sprites(pipeline, state, now, prepared, report);
     report.times.render_ms = render_watch.ms();
     const Stopwatch composite_watch;
     result = composite_shown(pipeline, report, state.sprites);
     report.times.composite_ms = composite_watch.ms();
-    if (report.compression) report.compression->cache = chunks_read(pipeline, report, state.compressed);
+    if (compression_of(pipeline)) report.compression->cache = chunks_read(pipeline, report, state.compressed);
   }
   report.picture = std::move(result.frame);
   report.composite = result.counters;
@@ -276,15 +273,15 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.
-  if (prepared) draw(pipeline, state, pipeline.scene.at(time_of(pipeline, frame)), *prepared, report);
+  if (prepared)
+    draw(authored, pipeline, state, pipeline.scene.at(time_of(pipeline, frame)), *prepared, report);
   return report;
 }
 
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
-  chunker::RenderCounters ignored;
   ShadowMapStore maps;
-  return draw_in_one_pass(pipeline, pipeline.scene.at(time_of(pipeline, frame)), prepared, maps, ignored)
-      .frame;
+  return draw_directly(pipeline, maps, prepared, pipeline.scene.at(time_of(pipeline, frame)), frame)
+      .composite.frame;
 }
 
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
