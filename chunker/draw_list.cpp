@@ -31,7 +31,7 @@ class PartAssembly {
  public:
   PartAssembly(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view,
                const Shader& shader, bool flat)
-      : view_(view), shader_(shader), vertices_(frame, part, view), flat_(flat) {
+      : view_(view), shader_(shader), vertices_(frame, part, view, shader), flat_(flat) {
     two_sided_ = part.material >= 0 && frame.scene->materials[part.material].two_sided;
     front_is_positive_ = view.mirrored != vertices_.mirrored();
     backs_ = two_sided_ && shader.lit && !flat_;
@@ -41,10 +41,11 @@ class PartAssembly {
   }
 
   void run_vertices() {
-    tbb::parallel_for(tbb::blocked_range<int>(0, vertices_.size(), kVerticesPerJob),
-                      [this](const auto& range) {
-                        for (int i = range.begin(); i != range.end(); ++i) run_vertex(i);
-                      });
+    const bool cut = layers::is_built(layers::Effect::ReflectionMap) && view_.region.kept;
+    if (vertices_.skinned())
+      cut ? run_vertices<true, true>() : run_vertices<true, false>();
+    else
+      cut ? run_vertices<false, true>() : run_vertices<false, false>();
   }
 
   std::vector<Block> run_triangles() const {
@@ -68,11 +69,23 @@ class PartAssembly {
  private:
   using Corners = std::array<std::uint32_t, 3>;
 
+  template <bool kSkinned, bool kCut>
+  void run_vertices() {
+    tbb::parallel_for(tbb::blocked_range<int>(0, vertices_.size(), kVerticesPerJob),
+                      [this](const auto& range) {
+                        for (int i = range.begin(); i != range.end(); ++i) run_vertex<kSkinned, kCut>(i);
+                      });
+  }
+
+  template <bool kSkinned, bool kCut>
   void run_vertex(int i) {
-    projected_[i] = project(view_, vertices_.sprite_point(i));
+    const dvec3 place = vertices_.sprite_point<kSkinned>(i);
+    projected_[i] = project(view_, place);
+    if constexpr (kCut)
+      if (view_.region.kept->height(place) < 0) projected_[i].flags |= kCutAway;
     const int count = shader_.layout.count;
     if (flat_ || count == 0) return;
-    ShadePoint point = vertices_.shade_point(i);
+    ShadePoint point = vertices_.shade_point<kSkinned>(i);
     write_attributes(shader_, point, &attributes_[static_cast<std::size_t>(i) * count]);
     if (!backs_) return;
     point.normal = -point.normal;
@@ -192,6 +205,14 @@ class PartAssembly {
   std::vector<Float4> attributes_;
 };
 
+/// Lights are not looked at for surfaces that show none.
+bool any_lit(const layers::Scene& scene, std::span<const int> parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](int part) {
+    const int material = scene.parts[part].material;
+    return material < 0 || !scene.materials[material].unlit;
+  });
+}
+
 void append(PartAssembly& assembly, std::vector<Block> blocks, std::uint32_t batch, DrawList& list) {
   std::vector<Float4>& attributes = list.batches[batch].attributes;
   const int count = list.batches[batch].shader.layout.count;
@@ -237,7 +258,7 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
   TALISMAN_CHECK(frame.scene == &prepared.scene());
   const layers::Scene& scene = *frame.scene;
   list.size_px = placement.empty() ? layers::ivec2{0, 0} : placement.size_px;
-  list.lights = light_set(frame, inputs);
+  if (any_lit(scene, parts)) list.lights = light_set(frame, inputs);
   list.term = inputs.term;
   for (const Reflection& r : inputs.reflections)
     list.reflections.push_back({r.picture, r.picture_from_screen * placement.screen_from_sprite});

@@ -18,6 +18,8 @@ using Float4 = float __attribute__((vector_size(16)));
 inline Float4 splat(float v) { return Float4{v, v, v, v}; }
 inline Float4 float4(const layers::vec3& v, float w = 0) { return Float4{v.x, v.y, v.z, w}; }
 
+inline bool all_ones(Float4 v) { return v[0] == 1 && v[1] == 1 && v[2] == 1 && v[3] == 1; }
+
 /// Sum of the products of the first three lanes.
 inline float dot3(Float4 a, Float4 b) {
   const Float4 p = a * b;

@@ -63,13 +63,13 @@ void FragmentBuffer<kCount>::clear(const LatticeBox& box, int max_fragments, Mer
   pool_.clear();
   free_ = -1;
   live_ = 0;
+  translucent_ = false;
   limit_ = max_fragments;
   merge_ = merge;
 }
 
 template <int kCount>
-Added FragmentBuffer<kCount>::add_to_busy(int texel, const Fragment& fragment) {
-  const bool whole = fragment.mask == kFull && fragment.opaque();
+Added FragmentBuffer<kCount>::add_to_busy(int texel, const Fragment& fragment, bool whole) {
   if (whole && (!has_base(texel) || nearer_samples<kCount>(fragment.depth, base_[texel].depth) == kFull)) {
     set_base(texel, fragment);
     if (first_[texel] >= 0) drop_hidden(texel);
@@ -130,6 +130,7 @@ std::int32_t FragmentBuffer<kCount>::allocate() {
 
 template <int kCount>
 Float4 FragmentBuffer<kCount>::resolve_busy(int texel) const {
+  if (!layers::is_built(layers::Effect::Translucency) || !translucent_) return resolve_opaque(texel);
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
     if (!pool_[i].opaque()) return resolve_translucent(texel);
   return resolve_opaque(texel);

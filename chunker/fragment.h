@@ -19,6 +19,7 @@
 
 #include "chunker/pixel.h"
 #include "chunker/triangle.h"
+#include "layers/built_effects.h"
 
 namespace talisman::chunker {
 
@@ -29,7 +30,7 @@ struct Fragment {
   std::uint32_t order = 0;  ///< of its triangle: at equal depth the earlier one is in front
   std::int32_t next = -1;   ///< of the same texel, -1: none
   std::uint16_t mask = 0;
-  bool opaque() const { return color[3] >= 1; }
+  bool opaque() const { return !layers::is_built(layers::Effect::Translucency) || color[3] >= 1; }
 };
 
 struct MergeTolerance {
@@ -74,10 +75,13 @@ class FragmentBuffer {
     return has_base(texel) && (nearer_samples<kCount>(depth, base.depth) & mask) == 0;
   }
 
-  /// `fragment` comes after all that were added before.
+  /// `fragment` comes after all that were added before. `kOpaque`: it is known to be opaque.
+  template <bool kOpaque = false>
   Added add(int texel, const Fragment& fragment) {
-    const bool whole = fragment.mask == kFull && fragment.opaque();
-    if (!whole || !is_clear(texel)) return add_to_busy(texel, fragment);
+    const bool opaque = kOpaque || fragment.opaque();
+    const bool whole = fragment.mask == kFull && opaque;
+    if constexpr (!kOpaque) translucent_ = translucent_ || !opaque;
+    if (!whole || !is_clear(texel)) return add_to_busy(texel, fragment, whole);
     set_base(texel, fragment);
     return Added::BecameBase;
   }
@@ -101,7 +105,7 @@ class FragmentBuffer {
     covered_[texel / kChunkSize] |= 1u << (texel % kChunkSize);
   }
   Float4 resolve_busy(int texel) const;
-  Added add_to_busy(int texel, const Fragment& fragment);
+  Added add_to_busy(int texel, const Fragment& fragment, bool whole);
   bool fill_disjoint(int texel, Colors& samples) const;
   bool merge(Fragment& last, const Fragment& fragment) const;
   void drop_hidden(int texel);
@@ -115,6 +119,7 @@ class FragmentBuffer {
   std::vector<Fragment> pool_;
   std::int32_t free_ = -1;
   int live_ = 0, limit_ = 0;
+  bool translucent_ = false;  ///< something that was added since the last clear() can be seen through
   MergeTolerance merge_;
   mutable std::vector<SampleEntry> surfaces_,
       entries_;  ///< of the texel that is being resolved; kept for their memory

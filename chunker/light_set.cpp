@@ -3,6 +3,7 @@
 
 #include "chunker/shade.h"
 #include "chunker/shadow_map.h"
+#include "layers/built_effects.h"
 #include "layers/check.h"
 
 namespace talisman::chunker {
@@ -24,6 +25,7 @@ bool wants_shadows(ShadeTerm term) {
 
 /// The place of the light's map in the set, or -1.
 int add_shadow(const ShadeInputs& inputs, std::size_t light, LightSet& set) {
+  if constexpr (!layers::is_built(layers::Effect::ShadowMap)) return -1;
   if (!wants_shadows(inputs.term) || light >= inputs.shadow_maps.size()) return -1;
   const bool other = inputs.light >= 0 && static_cast<std::size_t>(inputs.light) != light;
   if (inputs.term == ShadeTerm::Shadow && other) return -1;
@@ -52,6 +54,7 @@ LightSet::Spot spot(const layers::LightState& light, const dvec3& eye, int shado
 LightSet light_set(const layers::SceneFrame& frame, const ShadeInputs& inputs) {
   LightSet set;
   set.eye = dvec3(frame.camera.world_from_camera[3]);
+  if constexpr (!layers::is_built(layers::Effect::Lighting)) return set;
   for (std::size_t i = 0; i < frame.lights.size(); ++i) {
     const layers::LightState& light = frame.lights[i];
     if (!finite(light)) continue;

@@ -89,7 +89,7 @@ bool ChunkRenderer<kCount>::draw_triangle(std::uint32_t order, const LatticeBox&
   const Shader& shader = batch.shader;
   shade_batch(shader, interpolator_of(t, gradients, batch.attributes.data(), shader.layout.count), batch_);
   count_shading(shader);
-  return store_fragments(order);
+  return shader.opaque ? store_fragments<true>(order) : store_fragments<false>(order);
 }
 
 template <int kCount>
@@ -129,6 +129,7 @@ void ChunkRenderer<kCount>::gather_visible(const Triangle& t, const Gradients& g
 
 /// False if the fragments did not fit.
 template <int kCount>
+template <bool kOpaque>
 bool ChunkRenderer<kCount>::store_fragments(std::uint32_t order) {
   Fragment fragment;
   fragment.order = order;
@@ -138,14 +139,17 @@ bool ChunkRenderer<kCount>::store_fragments(std::uint32_t order) {
     fragment.mask = mask_[i];
     fragment.depth.z = depth_[i];
     fragment.color = batch_.color[i];
-    if (!is_nothing(fragment.color) && !add(texel_[i], fragment)) return false;
+    if constexpr (!kOpaque)
+      if (is_nothing(fragment.color)) continue;
+    if (!add<kOpaque>(texel_[i], fragment)) return false;
   }
   return true;
 }
 
 template <int kCount>
+template <bool kOpaque>
 bool ChunkRenderer<kCount>::add(int texel, const Fragment& fragment) {
-  const Added added = buffer_.add(texel, fragment);
+  const Added added = buffer_.template add<kOpaque>(texel, fragment);
   counters_.pixels_filled += added != Added::Refused ? 1 : 0;
   counters_.fragments += added == Added::Stored ? 1 : 0;
   counters_.fragments_merged += added == Added::Merged ? 1 : 0;

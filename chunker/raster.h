@@ -39,7 +39,10 @@ class ChunkRenderer {
   bool draw_triangles(std::span<const std::uint32_t> triangles, const LatticeBox& box);
   bool draw_triangle(std::uint32_t order, const LatticeBox& box);
   void gather_visible(const Triangle& t, const Gradients& gradients, const LatticeBox& box);
+  /// `kOpaque`: every colour of the batch has alpha 1, and nothing of it can be seen through.
+  template <bool kOpaque>
   bool store_fragments(std::uint32_t order);
+  template <bool kOpaque>
   bool add(int texel, const Fragment& fragment);
 
   const DrawList& list_;

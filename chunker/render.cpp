@@ -2,6 +2,7 @@
 #include "chunker/render.h"
 
 #include <algorithm>
+#include <map>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -10,6 +11,7 @@
 #include "chunker/bin.h"
 #include "chunker/clip.h"
 #include "chunker/raster.h"
+#include "layers/built_effects.h"
 #include "layers/check.h"
 
 namespace talisman::chunker {
@@ -41,6 +43,21 @@ Work set_up(const PreparedScene& prepared, const layers::SceneFrame& frame, std:
   for (int c = 0; c < work.bins.count(); ++c)
     if (!work.bins.of(c).empty()) work.places.push_back(c);
   return work;
+}
+
+/// The textures that parts use, and whether their coarser levels are needed: everywhere where they are
+/// filtered, and where a surface without coordinates shows the mean.
+std::map<int, bool> textures_of(const layers::Scene& scene, bool filtered) {
+  std::map<int, bool> used;
+  for (const layers::Part& part : scene.parts) {
+    if (part.material < 0) continue;
+    const bool coarser = filtered || scene.meshes[part.mesh].uvs.empty();
+    const layers::Material& material = scene.materials[part.material];
+    for (const int texture : {material.texture, material.texture2})
+      if (texture >= 0 && texture < static_cast<int>(scene.textures.size()))
+        used[texture] = used[texture] || coarser;
+  }
+  return used;
 }
 
 /// Draws every place; finished chunks go to `take(index of the place, chunk)`.
@@ -92,20 +109,17 @@ RenderCounters& RenderCounters::operator+=(const RenderCounters& o) {
   return *this;
 }
 
-PreparedScene::PreparedScene(const layers::Scene& scene) : impl_(std::make_unique<Impl>()) {
+PreparedScene::PreparedScene(const layers::Scene& scene, const RenderOptions& options)
+    : impl_(std::make_unique<Impl>()) {
   impl_->scene = &scene;
+  if (!layers::is_built(layers::Effect::Texture) || scene.textures.empty()) return;
   impl_->pyramids.resize(scene.textures.size());
-  std::vector<int> used;
-  for (const layers::Part& part : scene.parts)
-    if (part.material >= 0) {
-      used.push_back(scene.materials[part.material].texture);
-      used.push_back(scene.materials[part.material].texture2);
-    }
-  std::sort(used.begin(), used.end());
-  used.erase(std::unique(used.begin(), used.end()), used.end());
-  std::erase_if(used, [&](int t) { return t < 0 || t >= static_cast<int>(scene.textures.size()); });
-  tbb::parallel_for(std::size_t{0}, used.size(), [&](std::size_t i) {
-    impl_->pyramids[used[i]] = build_pyramid(scene.textures[used[i]]);
+  const bool filtered = layers::is_built(layers::Effect::MipFilter) && options.mipmaps &&
+                        options.filter == TextureFilter::Trilinear;
+  const std::map<int, bool> used = textures_of(scene, filtered);
+  const std::vector<std::pair<int, bool>> list(used.begin(), used.end());
+  tbb::parallel_for(std::size_t{0}, list.size(), [&](std::size_t i) {
+    impl_->pyramids[list[i].first] = build_pyramid(scene.textures[list[i].first], list[i].second);
   });
 }
 

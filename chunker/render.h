@@ -83,10 +83,10 @@ struct RenderCounters {
 };
 
 /// What rendering needs of a scene beyond the scene itself (texture pyramids); made once, only for the
-/// textures that parts use. Keeps a reference to `scene`.
+/// textures that parts use, and only the levels that `options` look up. Keeps a reference to `scene`.
 class PreparedScene {
  public:
-  explicit PreparedScene(const layers::Scene& scene);
+  explicit PreparedScene(const layers::Scene& scene, const RenderOptions& options = {});
   ~PreparedScene();
   PreparedScene(PreparedScene&&) noexcept;
   PreparedScene& operator=(PreparedScene&&) noexcept;

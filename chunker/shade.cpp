@@ -157,6 +157,15 @@ Float4 look_up(const Shader& shader, const Pyramid& pyramid, const Interpolator&
 /// Shares of each map's light in `whole`.
 Float4 shares(Float4 parts, float whole) { return whole > 0 ? parts * splat(1 / whole) : splat(0); }
 
+Lighting interpolated_lighting(const Shader& shader, const Interpolator& t, const Lambda& at,
+                               Float4 visibility) {
+  if (shader.shadowed)
+    return shader.has_specular ? interpolated_lighting<true, true>(shader, t, at, visibility)
+                               : interpolated_lighting<false, true>(shader, t, at, visibility);
+  return shader.has_specular ? interpolated_lighting<true, false>(shader, t, at, visibility)
+                             : interpolated_lighting<false, false>(shader, t, at, visibility);
+}
+
 /// Diffuse (times base and vertex colour) and specular at a pixel.
 Lighting lighting_at(const Shader& shader, const Interpolator& t, const Lambda& at, Float4 visibility) {
   if (!shader.per_pixel) return interpolated_lighting(shader, t, at, visibility);
@@ -276,31 +285,21 @@ Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at, i
   return color;
 }
 
-Lighting interpolated_lighting(const Shader& shader, const Interpolator& t, const Lambda& at,
-                               Float4 visibility) {
-  const AttributeLayout& layout = shader.layout;
-  Lighting lighting{layout.color >= 0 ? attribute(t, at, layout.color) : shader.base,
-                    layout.specular >= 0 ? attribute(t, at, layout.specular) : splat(0)};
-  if (!shader.shadowed) return lighting;
-  lighting.shadow = shadow_product(attribute(t, at, layout.share), visibility, shader.lights->shadows);
-  if (layout.specular_share < 0) return lighting;
-  const Float4 taken = attribute(t, at, layout.specular_share) * (splat(1) - visibility);
-  float left = 1;
-  for (int k = 0; k < shader.lights->shadows; ++k) left -= taken[k];
-  lighting.specular *= splat(clamp_unit(left));
-  return lighting;
-}
-
 Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy) {
   const Lambda at = lambda_at(t, dx, dy);
   int samples = 0;
   const Float4 texel = texel_at(shader, t, at, samples);
-  if (!shader.extended()) return combined(shader, texel, lighting_at(shader, t, at, splat(1)));
+  const Float4 opacity = splat(shader.opacity);
+  if (!shader.extended())
+    return combined<Terms{}>(shader, texel, lighting_at(shader, t, at, splat(1)), splat(0)) * opacity;
   const Float4 visibility =
       shader.shadowed ? visibility_at(*shader.lights, attribute(t, at, shader.layout.position)) : splat(1);
   const Float4 reflection =
       shader.reflection != nullptr ? reflection_at(*shader.reflection, t, dx, dy) : splat(0);
-  return combined(shader, texel, lighting_at(shader, t, at, visibility), reflection);
+  const Lighting lighting = lighting_at(shader, t, at, visibility);
+  if (shader.shadow_term)
+    return combined<Terms{.shadow_alone = true}>(shader, texel, lighting, reflection) * opacity;
+  return combined<Terms{.shadowed = true, .reflecting = true}>(shader, texel, lighting, reflection) * opacity;
 }
 
 void finish_term(ShadeTerm term, std::span<Float4> texels) {

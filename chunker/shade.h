@@ -40,7 +40,9 @@
 #include <vector>
 
 #include "chunker/float4.h"
+#include "chunker/interpolator.h"
 #include "chunker/prepared.h"
+#include "layers/built_effects.h"
 
 namespace talisman::chunker {
 
@@ -96,31 +98,35 @@ struct AttributeLayout {
   int specular_share = -1;  ///< the same of the highlights
   int count = 0;
 };
-inline constexpr int kMaxAttributes = 6;
 
+/// What belongs to an effect is a constant where the build lacks it (layers/built_effects.h).
 struct Shader {
+  template <layers::Effect kEffect, typename T, T kAbsent = T{}>
+  using Of = layers::ValueOf<kEffect, T, kAbsent>;
+  using enum layers::Effect;
+
   AttributeLayout layout;
   const LightSet* lights = nullptr;
-  const Pyramid* pyramid = nullptr;  ///< null: `texel` everywhere
-  Float4 texel{1, 1, 1, 1};          ///< where there is no pyramid
-  const Pyramid* pyramid2 = nullptr;
+  Of<Texture, const Pyramid*> pyramid;  ///< null: `texel` everywhere
+  Float4 texel{1, 1, 1, 1};             ///< where there is no pyramid
+  Of<Texture, const Pyramid*> pyramid2;
   Float4 texel2{0, 0, 0, 0};
   float blend1 = 1, blend2 = 0;
-  const ReflectionLookup* reflection = nullptr;  ///< null: none
+  Of<ReflectionMap, const ReflectionLookup*> reflection;  ///< null: none
   float reflectivity = 0;
   Float4 base{1, 1, 1, 1};
   Float4 specular{0, 0, 0, 0};
   Float4 emissive{0, 0, 0, 0};
   float shininess = 0;
-  float opacity = 1;
-  bool mipmaps = true;
-  bool lit = false;        ///< the lights are evaluated: neither unlit nor ambient only
-  bool per_pixel = false;  ///< Phong
-  bool has_specular = false;
-  bool opaque = true;        ///< alpha is exactly 1 at every pixel
-  bool shadowed = false;     ///< shadow maps are looked up
-  bool shadow_term = false;  ///< the colour is (1 - Π s) α in red
-  bool two_textures = false;
+  Of<Translucency, float, 1.0f> opacity;
+  Of<MipFilter, bool> mipmaps;
+  Of<Lighting, bool> lit;        ///< the lights are evaluated: neither unlit nor ambient only
+  Of<Lighting, bool> per_pixel;  ///< Phong
+  Of<SpecularHighlight, bool> has_specular;
+  Of<Translucency, bool, true> opaque;  ///< alpha is exactly 1 at every pixel
+  Of<ShadowMap, bool> shadowed;         ///< shadow maps are looked up
+  Of<ShadowLayer, bool> shadow_term;    ///< the colour is (1 - Π s) α in red
+  Of<Texture, bool> two_textures;
   TextureFilter filter = TextureFilter::Trilinear;
   int max_anisotropy = 1;
   /// Texels are looked up point by point: what only some scenes ask for is not worth lanes.
@@ -129,6 +135,10 @@ struct Shader {
   }
   bool textured() const { return pyramid != nullptr || pyramid2 != nullptr; }
   bool extended() const { return shadowed || reflection != nullptr; }
+  /// The texel is 1 at every point: there is nothing to multiply with.
+  bool plain() const {
+    return !layers::is_built(Texture) || (!textured() && !two_textures && all_ones(texel));
+  }
 };
 
 /// What of the inputs belongs to one part.
@@ -184,61 +194,30 @@ struct ShadePoint {
 /// Writes shader.layout.count attributes.
 void write_attributes(const Shader& shader, const ShadePoint& point, Float4* attributes);
 
-/// The gradient set-up of one triangle for interpolation in perspective, relative to its first corner:
-///
-///   q₁ = b₁/w₁, q₂ = b₂/w₂, s = Σ bᵢ/wᵢ are linear on the screen (b: barycentric);  λᵢ = qᵢ/s;  a = a₀ +
-///   λ₁(a₁-a₀) + λ₂(a₂-a₀)
-struct Interpolator {
-  float q1x, q1y, q2x, q2y;
-  float s0, sx, sy;
-  float corner_x, corner_y;  ///< of the first corner on the sprite, texels
-  Float4 a0[kMaxAttributes], d1[kMaxAttributes], d2[kMaxAttributes];
+/// Which terms of the formulas on top there are besides the base; `shadow_alone`: the shadow, and nothing
+/// else.
+struct Terms {
+  bool specular = true, shadowed = false, reflecting = false, shadow_alone = false;
+  constexpr bool extended() const { return shadowed || reflecting; }
 };
 
-/// λ at one place, kept inside the triangle: rounding must not extrapolate.
-struct Lambda {
-  float one, two;
-  float inverse_s;
-};
-
-inline float clamp_unit(float v) { return v > 0 ? (v < 1 ? v : 1.0f) : 0.0f; }  // NaN becomes 0
-
-inline Lambda lambda_at(const Interpolator& t, float dx, float dy) {
-  const float r = 1 / (t.s0 + t.sx * dx + t.sy * dy);
-  return {clamp_unit((t.q1x * dx + t.q1y * dy) * r), clamp_unit((t.q2x * dx + t.q2y * dy) * r), r};
-}
-
-inline Float4 attribute(const Interpolator& t, const Lambda& at, int index) {
-  return t.a0[index] + t.d1[index] * splat(at.one) + t.d2[index] * splat(at.two);
-}
-
-/// The two screen derivatives of (u, v) in texels of level 0.
-inline TextureDerivatives texture_derivatives(const Interpolator& t, const Lambda& at, int uv,
-                                              const MipLevel& finest) {
-  const float one_x = (t.q1x - at.one * t.sx) * at.inverse_s, one_y = (t.q1y - at.one * t.sy) * at.inverse_s;
-  const float two_x = (t.q2x - at.two * t.sx) * at.inverse_s, two_y = (t.q2y - at.two * t.sy) * at.inverse_s;
-  const Float4 texels{static_cast<float>(finest.width), static_cast<float>(finest.height), 0, 0};
-  const Float4 x = (t.d1[uv] * splat(one_x) + t.d2[uv] * splat(two_x)) * texels;
-  const Float4 y = (t.d1[uv] * splat(one_y) + t.d2[uv] * splat(two_y)) * texels;
-  return {x, y};
-}
-
-/// The last line of the first formula on top.
-inline Float4 combined(const Shader& shader, Float4 texel, const Lighting& lighting) {
-  Float4 color = lighting.diffuse * texel + (lighting.specular + shader.emissive) * splat(texel[3]);
-  color[3] = texel[3];
-  return color * splat(shader.opacity);
-}
-
-/// The lines after it, for shaders that are extended().
+/// The formulas on top without the opacity. A term that is not there costs nothing.
+template <Terms kTerms>
 inline Float4 combined(const Shader& shader, Float4 texel, const Lighting& lighting, Float4 reflection) {
   const Float4 alpha = splat(texel[3]);
-  if (shader.shadow_term)
-    return Float4{(1 - lighting.shadow) * texel[3], 0, 0, texel[3]} * splat(shader.opacity);
-  Float4 color = (lighting.diffuse * texel + shader.emissive * alpha) * splat(lighting.shadow);
-  color += (lighting.specular + reflection * splat(shader.reflectivity)) * alpha;
+  if constexpr (kTerms.shadow_alone) return Float4{(1 - lighting.shadow) * texel[3], 0, 0, texel[3]};
+  Float4 color = lighting.diffuse * texel;
+  if constexpr (!kTerms.extended()) {
+    color += (kTerms.specular ? lighting.specular + shader.emissive : shader.emissive) * alpha;
+  } else {
+    color += shader.emissive * alpha;
+    if constexpr (kTerms.shadowed) color *= splat(lighting.shadow);
+    Float4 added = lighting.specular;
+    if constexpr (kTerms.reflecting) added += reflection * splat(shader.reflectivity);
+    if constexpr (kTerms.reflecting || kTerms.specular) color += added * alpha;
+  }
   color[3] = texel[3];
-  return color * splat(shader.opacity);
+  return color;
 }
 
 /// Visibility of the lights that have maps, at `position` relative to the eye.
@@ -251,8 +230,22 @@ Float4 reflection_at(const ReflectionLookup& lookup, const Interpolator& t, floa
 Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples);
 
 /// Lighting of Flat and Gouraud shading at a point: interpolated. `visibility` counts for shadowed shaders.
-Lighting interpolated_lighting(const Shader& shader, const Interpolator& t, const Lambda& at,
-                               Float4 visibility);
+template <bool kSpecular, bool kShadowed>
+inline Lighting interpolated_lighting(const Shader& shader, const Interpolator& t, const Lambda& at,
+                                      Float4 visibility) {
+  const AttributeLayout& layout = shader.layout;
+  Lighting lighting{layout.color >= 0 ? attribute(t, at, layout.color) : shader.base, splat(0)};
+  if constexpr (kSpecular) lighting.specular = attribute(t, at, layout.specular);
+  if constexpr (kShadowed)
+    lighting.shadow = shadow_product(attribute(t, at, layout.share), visibility, shader.lights->shadows);
+  if constexpr (kSpecular && kShadowed) {
+    const Float4 taken = attribute(t, at, layout.specular_share) * (splat(1) - visibility);
+    float left = 1;
+    for (int k = 0; k < shader.lights->shadows; ++k) left -= taken[k];
+    lighting.specular *= splat(clamp_unit(left));
+  }
+  return lighting;
+}
 
 /// Premultiplied colour at (dx, dy) texels from the triangle's first corner: the definition of what
 /// shade_batch does.

@@ -186,9 +186,13 @@ HWY_INLINE void choose_taps(const Pyramid& pyramid, Vec u, Vec v, Vec footprint,
   store_taps(u, v, hn::GatherIndex(di, widths, next), hn::GatherIndex(di, heights, next), block.coarse, i);
 }
 
-void Interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+/// What is looked up besides λ.
+enum class Footprint { None, Finest, Level };
+
+template <Footprint kFootprint>
+HWY_INLINE void interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   const Floats d;
-  const int uv = shader.layout.uv;
+  [[maybe_unused]] const int uv = shader.layout.uv;
   for (int i = 0; i < block.count; i += static_cast<int>(hn::Lanes(d))) {
     const Vec dx = hn::LoadU(d, block.dx + i), dy = hn::LoadU(d, block.dy + i);
     const Vec s = hn::Add(hn::Add(set(t.s0), hn::Mul(set(t.sx), dx)), hn::Mul(set(t.sy), dy));
@@ -197,17 +201,30 @@ void Interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block)
     const Vec two = clamped(hn::Mul(plane(t.q2x, dx, t.q2y, dy), r));
     hn::Store(one, d, &block.one[i]);
     hn::Store(two, d, &block.two[i]);
-    if (uv < 0 || shader.scalar_texels()) continue;
-    Vec footprint = set(0);
-    if (shader.mipmaps) {
-      const MipLevel& finest = shader.pyramid->levels[0];
+    if constexpr (kFootprint == Footprint::None) continue;
+    const MipLevel& finest = shader.pyramid->levels[0];
+    const Vec u = channel(t, uv, 0, one, two), v = channel(t, uv, 1, one, two);
+    if constexpr (kFootprint == Footprint::Finest) {
+      const Ints di;
+      store_taps(u, v, hn::Set(di, finest.width), hn::Set(di, finest.height), block.fine, i);
+    } else {
       const Vec x = squared_derivative(t, uv, finest, one, two, r, t.q1x, t.q2x, t.sx);
       const Vec y = squared_derivative(t, uv, finest, one, two, r, t.q1y, t.q2y, t.sy);
-      footprint = hn::IfThenElse(hn::Lt(x, y), y, x);
+      choose_taps(*shader.pyramid, u, v, hn::IfThenElse(hn::Lt(x, y), y, x), block, i);
     }
-    choose_taps(*shader.pyramid, channel(t, uv, 0, one, two), channel(t, uv, 1, one, two), footprint, block,
-                i);
   }
+}
+
+void Interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  interpolate<Footprint::None>(shader, t, block);
+}
+void InterpolateBilinear([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                         [[maybe_unused]] ShadeBlock& block) {
+  if constexpr (layers::is_built(layers::Effect::Texture)) interpolate<Footprint::Finest>(shader, t, block);
+}
+void InterpolateTrilinear([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                          [[maybe_unused]] ShadeBlock& block) {
+  if constexpr (layers::is_built(layers::Effect::Texture)) interpolate<Footprint::Level>(shader, t, block);
 }
 
 /// The Phong lobe lane by lane: it needs more precision than a float has.
@@ -235,7 +252,7 @@ struct ShadowRows {
   alignas(64) float diffuse[layers::kMaxShadowLights][16];  ///< luminance of each map's light
 };
 
-template <bool kShadowed>
+template <bool kShadowed, bool kSpecular>
 HWY_INLINE void add_light(const Shader& shader, const Vec3& normal, const Vec3& to_eye, const Vec3& to_light,
                           const Vec3& color, [[maybe_unused]] int shadow, Lit& lit,
                           [[maybe_unused]] ShadowRows& rows) {
@@ -250,7 +267,7 @@ HWY_INLINE void add_light(const Shader& shader, const Vec3& normal, const Vec3& 
   lit.diffuse = {hn::IfThenElse(lit_side, diffuse.x, lit.diffuse.x),
                  hn::IfThenElse(lit_side, diffuse.y, lit.diffuse.y),
                  hn::IfThenElse(lit_side, diffuse.z, lit.diffuse.z)};
-  if (!shader.has_specular) return;
+  if constexpr (!kSpecular) return;
   const Vec lobe = lobes(dot(normal, unit(sum(to_light, to_eye))), shader.shininess);
   Vec3 highlight = scaled(product(color, set3(shader.specular)), lobe);
   if constexpr (kShadowed)
@@ -293,7 +310,7 @@ HWY_INLINE void store_shadow(const LightSet& lights, const Lit& lit, const Shado
 }
 
 /// light() at every point.
-template <bool kShadowed>
+template <bool kShadowed, bool kSpecular>
 HWY_INLINE void light_points(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   const Floats d;
   ShadowRows rows;
@@ -304,36 +321,41 @@ HWY_INLINE void light_points(const Shader& shader, const Interpolator& t, ShadeB
     const Vec3 nowhere{set(0), set(0), set(0)};
     const Vec3 position =
         shader.layout.position >= 0 ? attribute3(t, shader.layout.position, one, two) : nowhere;
-    const Vec3 to_eye = shader.has_specular
-                            ? unit(Vec3{hn::Neg(position.x), hn::Neg(position.y), hn::Neg(position.z)})
-                            : nowhere;
+    const Vec3 to_eye =
+        kSpecular ? unit(Vec3{hn::Neg(position.x), hn::Neg(position.y), hn::Neg(position.z)}) : nowhere;
     if constexpr (kShadowed) {
       rows.first = i;
       for (auto& row : rows.diffuse) hn::Store(set(0), d, row);
     }
     Lit lit{set3(shader.lights->ambient), nowhere};
     for (const auto& source : shader.lights->directional)
-      add_light<kShadowed>(shader, normal, to_eye, set3(source.to_light), set3(source.color), source.shadow,
-                           lit, rows);
+      add_light<kShadowed, kSpecular>(shader, normal, to_eye, set3(source.to_light), set3(source.color),
+                                      source.shadow, lit, rows);
     for (const auto& source : shader.lights->point)
-      add_light<kShadowed>(shader, normal, to_eye, unit(minus(set3(source.position), position)),
-                           set3(source.color), source.shadow, lit, rows);
+      add_light<kShadowed, kSpecular>(shader, normal, to_eye, unit(minus(set3(source.position), position)),
+                                      set3(source.color), source.shadow, lit, rows);
     for (const auto& source : shader.lights->spot) {
       const Vec3 to_light = unit(minus(set3(source.position), position));
-      add_light<kShadowed>(shader, normal, to_eye, to_light, spot_color(source, to_light), source.shadow, lit,
-                           rows);
+      add_light<kShadowed, kSpecular>(shader, normal, to_eye, to_light, spot_color(source, to_light),
+                                      source.shadow, lit, rows);
     }
     store3(lit.diffuse, block.diffuse, i);
-    if (shader.has_specular) store3(lit.specular, block.specular, i);
+    if constexpr (kSpecular) store3(lit.specular, block.specular, i);
     if constexpr (kShadowed) store_shadow(*shader.lights, lit, rows, block);
   }
 }
 
 void LightPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
-  light_points<false>(shader, t, block);
+  light_points<false, false>(shader, t, block);
+}
+void LightShinyPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  light_points<false, true>(shader, t, block);
 }
 void LightShadowedPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
-  light_points<true>(shader, t, block);
+  light_points<true, false>(shader, t, block);
+}
+void LightShadowedShinyPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  light_points<true, true>(shader, t, block);
 }
 
 }  // namespace talisman::chunker::HWY_NAMESPACE
@@ -344,8 +366,12 @@ namespace talisman::chunker {
 namespace {
 
 HWY_EXPORT(Interpolate);
+HWY_EXPORT(InterpolateBilinear);
+HWY_EXPORT(InterpolateTrilinear);
 HWY_EXPORT(LightPoints);
+HWY_EXPORT(LightShinyPoints);
 HWY_EXPORT(LightShadowedPoints);
+HWY_EXPORT(LightShadowedShinyPoints);
 
 Float4 fetch(const MipLevel& level, const BlockTaps& taps, int i) {
   const Float4* texels = level.texels.data();
@@ -354,72 +380,126 @@ Float4 fetch(const MipLevel& level, const BlockTaps& taps, int i) {
   return mix(upper, lower, taps.y_share[i]);
 }
 
-/// Where the texels of a block come from.
-enum class Texels { Constant, Taps, Looked };
+/// Where the texels of a block come from: there is no texture; its mean; four taps; twice four taps; point by
+/// point.
+enum class Texels { None, Constant, Bilinear, Trilinear, Looked };
+
+Texels texels_of(const Shader& shader) {
+  if (shader.plain()) return Texels::None;
+  if (shader.scalar_texels()) return Texels::Looked;
+  if (shader.pyramid == nullptr) return Texels::Constant;
+  return shader.mipmaps ? Texels::Trilinear : Texels::Bilinear;
+}
 
 template <Texels kTexels>
 Float4 texel_of(const Shader& shader, const Interpolator& t, const ShadeBlock& block, int i, int& samples) {
+  if constexpr (kTexels == Texels::None) return splat(1);
   if constexpr (kTexels == Texels::Constant) return shader.texel;
   if constexpr (kTexels == Texels::Looked)
     return texel_at(shader, t, lambda_at(t, block.dx[i], block.dy[i]), samples);
   ++samples;
+  if constexpr (kTexels == Texels::Bilinear) return fetch(shader.pyramid->levels[0], block.fine, i);
   const MipLevel* level = &shader.pyramid->levels[block.level[i]];
   const Float4 fine = fetch(level[0], block.fine, i);
   const float share = block.level_share[i];
   return share > 0 ? mix(fine, fetch(level[1], block.coarse, i), share) : fine;
 }
 
-template <bool kPerPixel, bool kExtended>
+template <bool kPerPixel, Terms kTerms>
 Lighting lighting_of(const Shader& shader, const Interpolator& t, const ShadeBlock& block, int i) {
   const Lambda at{block.one[i], block.two[i], 0};
   if constexpr (kPerPixel) {
     const Float4 color = shader.layout.color >= 0 ? attribute(t, at, shader.layout.color) : shader.base;
     const Float4 diffuse{block.diffuse[0][i], block.diffuse[1][i], block.diffuse[2][i], 0};
     Lighting lighting{color * diffuse, splat(0)};
-    if (shader.has_specular)
+    if constexpr (kTerms.specular)
       lighting.specular = Float4{block.specular[0][i], block.specular[1][i], block.specular[2][i], 0};
-    if constexpr (kExtended) lighting.shadow = shader.shadowed ? block.shadow[i] : 1.0f;
+    if constexpr (kTerms.shadowed) lighting.shadow = block.shadow[i];
     return lighting;
   } else {
     Float4 visibility = splat(1);
-    if constexpr (kExtended)
-      if (shader.shadowed)
-        for (int k = 0; k < layers::kMaxShadowLights; ++k) visibility[k] = block.visibility[k][i];
-    return interpolated_lighting(shader, t, at, visibility);
+    if constexpr (kTerms.shadowed)
+      for (int k = 0; k < layers::kMaxShadowLights; ++k) visibility[k] = block.visibility[k][i];
+    return interpolated_lighting<kTerms.specular, kTerms.shadowed>(shader, t, at, visibility);
   }
 }
 
-template <Texels kTexels, bool kPerPixel, bool kExtended>
+template <Texels kTexels, bool kPerPixel, Terms kTerms>
 int combine(const Shader& shader, const Interpolator& t, const ShadeBlock& block, Float4* color) {
   int samples = 0;
   for (int i = 0; i < block.count; ++i) {
     const Float4 texel = texel_of<kTexels>(shader, t, block, i, samples);
-    const Lighting lighting = lighting_of<kPerPixel, kExtended>(shader, t, block, i);
-    if constexpr (kExtended) {
-      const Float4 reflection = shader.reflection != nullptr
-                                    ? reflection_at(*shader.reflection, t, block.dx[i], block.dy[i])
-                                    : splat(0);
-      color[i] = combined(shader, texel, lighting, reflection);
-    } else {
-      color[i] = combined(shader, texel, lighting);
-    }
+    const Lighting lighting = lighting_of<kPerPixel, kTerms>(shader, t, block, i);
+    Float4 reflection = splat(0);
+    if constexpr (kTerms.reflecting)
+      reflection = reflection_at(*shader.reflection, t, block.dx[i], block.dy[i]);
+    color[i] = combined<kTerms>(shader, texel, lighting, reflection);
   }
   return samples;
 }
 
 using Combine = int (*)(const Shader&, const Interpolator&, const ShadeBlock&, Float4*);
 
-template <Texels kTexels>
-Combine choose_combine(const Shader& shader) {
-  if (shader.per_pixel)
-    return shader.extended() ? combine<kTexels, true, true> : combine<kTexels, true, false>;
-  return shader.extended() ? combine<kTexels, false, true> : combine<kTexels, false, false>;
+/// What is known of a shader becomes known to the compiler, step by step: no term that a surface lacks is
+/// asked for at each of its points.
+template <Texels kTexels, bool kPerPixel, Terms kTerms>
+Combine choose_reflection(const Shader& shader) {
+  constexpr Terms kMirroring{kTerms.specular, kTerms.shadowed, true};
+  return shader.reflection != nullptr ? combine<kTexels, kPerPixel, kMirroring>
+                                      : combine<kTexels, kPerPixel, kTerms>;
 }
 
-Combine choose_combine(const Shader& shader) {
-  if (shader.scalar_texels()) return choose_combine<Texels::Looked>(shader);
-  return shader.pyramid != nullptr ? choose_combine<Texels::Taps>(shader)
-                                   : choose_combine<Texels::Constant>(shader);
+template <Texels kTexels, bool kPerPixel, bool kSpecular>
+Combine choose_shadow(const Shader& shader) {
+  if (!shader.shadowed) return choose_reflection<kTexels, kPerPixel, Terms{kSpecular}>(shader);
+  constexpr Terms kAlone{.specular = false, .shadowed = true, .shadow_alone = true};
+  return shader.shadow_term ? combine<kTexels, kPerPixel, kAlone>
+                            : choose_reflection<kTexels, kPerPixel, Terms{kSpecular, true}>(shader);
+}
+
+template <Texels kTexels>
+Combine choose_lighting(const Shader& shader) {
+  if (shader.per_pixel)
+    return shader.has_specular ? choose_shadow<kTexels, true, true>(shader)
+                               : choose_shadow<kTexels, true, false>(shader);
+  return shader.has_specular ? choose_shadow<kTexels, false, true>(shader)
+                             : choose_shadow<kTexels, false, false>(shader);
+}
+
+Combine choose_combine(const Shader& shader, Texels texels) {
+  switch (texels) {
+    case Texels::None:
+      return choose_lighting<Texels::None>(shader);
+    case Texels::Constant:
+      return choose_lighting<Texels::Constant>(shader);
+    case Texels::Bilinear:
+      return choose_lighting<Texels::Bilinear>(shader);
+    case Texels::Trilinear:
+      return choose_lighting<Texels::Trilinear>(shader);
+    case Texels::Looked:
+      return choose_lighting<Texels::Looked>(shader);
+  }
+  return nullptr;
+}
+
+void interpolate_block(const Shader& shader, const Interpolator& t, Texels texels, ShadeBlock& block) {
+  if (texels == Texels::Trilinear)
+    HWY_DYNAMIC_DISPATCH(InterpolateTrilinear)(shader, t, block);
+  else if (texels == Texels::Bilinear)
+    HWY_DYNAMIC_DISPATCH(InterpolateBilinear)(shader, t, block);
+  else
+    HWY_DYNAMIC_DISPATCH(Interpolate)(shader, t, block);
+}
+
+void light_block(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  if (shader.shadowed && shader.has_specular)
+    HWY_DYNAMIC_DISPATCH(LightShadowedShinyPoints)(shader, t, block);
+  else if (shader.shadowed)
+    HWY_DYNAMIC_DISPATCH(LightShadowedPoints)(shader, t, block);
+  else if (shader.has_specular)
+    HWY_DYNAMIC_DISPATCH(LightShinyPoints)(shader, t, block);
+  else
+    HWY_DYNAMIC_DISPATCH(LightPoints)(shader, t, block);
 }
 
 void look_up_shadows(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
@@ -430,24 +510,27 @@ void look_up_shadows(const Shader& shader, const Interpolator& t, ShadeBlock& bl
   }
 }
 
+void fade(float opacity, std::span<Float4> colors) {
+  for (Float4& color : colors) color *= splat(opacity);
+}
+
 }  // namespace
 
 void shade_batch(const Shader& shader, const Interpolator& t, ShadeBatch& batch) {
-  const Combine combine_block = choose_combine(shader);
+  const Texels texels = texels_of(shader);
+  const Combine combine_block = choose_combine(shader, texels);
   ShadeBlock block;
   batch.texture_samples = 0;
   for (int first = 0; first < batch.count; first += kBlock) {
     block.dx = &batch.dx[first];
     block.dy = &batch.dy[first];
     block.count = std::min(kBlock, batch.count - first);
-    HWY_DYNAMIC_DISPATCH(Interpolate)(shader, t, block);
+    interpolate_block(shader, t, texels, block);
     if (shader.shadowed) look_up_shadows(shader, t, block);
-    if (shader.per_pixel && shader.shadowed)
-      HWY_DYNAMIC_DISPATCH(LightShadowedPoints)(shader, t, block);
-    else if (shader.per_pixel)
-      HWY_DYNAMIC_DISPATCH(LightPoints)(shader, t, block);
+    if (shader.per_pixel) light_block(shader, t, block);
     batch.texture_samples += combine_block(shader, t, block, &batch.color[first]);
   }
+  if (shader.opacity != 1) fade(shader.opacity, {batch.color.data(), static_cast<std::size_t>(batch.count)});
 }
 
 }  // namespace talisman::chunker

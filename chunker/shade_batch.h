@@ -8,6 +8,7 @@
 /// (shadow maps, reflections, second textures, anisotropy) is looked up point by point, by the functions of
 /// chunker/shade.h; a shader without them never comes near.
 
+#include <span>
 #include <vector>
 
 #include "chunker/pixel.h"

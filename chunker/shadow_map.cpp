@@ -11,6 +11,7 @@
 #include "chunker/bin.h"
 #include "chunker/coverage.h"
 #include "chunker/shadow_view.h"
+#include "chunker/transform.h"
 #include "layers/check.h"
 
 namespace talisman::chunker {

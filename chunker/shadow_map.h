@@ -29,7 +29,7 @@
 #include <span>
 #include <vector>
 
-#include "chunker/transform.h"
+#include "chunker/rows34.h"
 #include "layers/scene.h"
 
 namespace talisman::chunker {

@@ -110,14 +110,14 @@ Float4 anisotropic(const Pyramid& pyramid, float u, float v, const TextureDeriva
   return mean;
 }
 
-Pyramid build_pyramid(const layers::Texture& texture) {
+Pyramid build_pyramid(const layers::Texture& texture, bool coarser) {
   Pyramid pyramid;
   if (texture.width <= 0 || texture.height <= 0) return pyramid;
   if (texture.rgba.size() < static_cast<std::size_t>(texture.width) * texture.height * 4) return pyramid;
   pyramid.levels.push_back(decode_texels(texture));
   const auto& finest = pyramid.levels[0].texels;
   pyramid.opaque = std::all_of(finest.begin(), finest.end(), [](const Float4& t) { return t[3] == 1; });
-  while (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1) {
+  while (coarser && (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1)) {
     pyramid.levels.push_back(half_of(pyramid.levels.back()));
     snap_opaque(pyramid.levels.back());
   }

@@ -39,8 +39,8 @@ struct Pyramid {
 };
 
 /// Cost: O(texels). A texture without texels, or with fewer bytes than its size asks for, gives an empty
-/// pyramid.
-Pyramid build_pyramid(const layers::Texture& texture);
+/// pyramid. `coarser`: with all levels; else the finest alone, and no mean.
+Pyramid build_pyramid(const layers::Texture& texture, bool coarser = true);
 
 /// Largest |u|, |v| that is kept as it is; beyond it float coordinates have lost their fraction anyway.
 inline constexpr float kLargestTextureCoordinate = 1e6f;

@@ -118,7 +118,6 @@ ProjectedVertex project(const SpriteView& view, const dvec3& p) {
       (p.x < 0 ? kLeftOfSprite : 0) | (p.x > view.size_px.x * w ? kRightOfSprite : 0) |
       (p.y < 0 ? kAboveSprite : 0) | (p.y > view.size_px.y * w ? kBelowSprite : 0) |
       (w < view.region.near_w ? kBeforeNear : 0));
-  if (view.region.kept && view.region.kept->height(p) < 0) v.flags |= kCutAway;
   if (v.flags & kBeforeNear) return v;
   const double r = 1 / w, x = p.x * r, y = p.y * r;
   v.depth = static_cast<float>(r);
@@ -143,16 +142,17 @@ ProjectedVertex project_cut(const SpriteView& view, dvec3 p) {
     v.y = snap(std::clamp(p.y / p.z, lo.y, hi.y));
     v.flags = static_cast<std::uint8_t>(v.flags & ~kOutsideGuard);
   }
-  v.flags = static_cast<std::uint8_t>(v.flags & ~kCutAway);  // it was cut there
   if (v.flags & kClipFlags) v.flags = kNotFinite;
   return v;
 }
 
-PartVertices::PartVertices(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view)
+PartVertices::PartVertices(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view,
+                           const Shader& shader)
     : mesh_(&frame.scene->meshes[part.mesh]) {
+  const bool is_skinned = layers::is_built(layers::Effect::Skinning) && part.skin >= 0;
   const dmat4 world_from_source =
-      part.skin < 0 && part.node >= 0 ? frame.world_from_node[part.node] : dmat4(1.0);
-  if (part.skin >= 0) {
+      !is_skinned && part.node >= 0 ? frame.world_from_node[part.node] : dmat4(1.0);
+  if (is_skinned) {
     world_ = layers::world_positions(frame, part);
     for (const dmat4& joint : layers::joint_palette(frame, part))
       joint_normals_.push_back(cofactors(dmat3(joint)));
@@ -162,12 +162,17 @@ PartVertices::PartVertices(const layers::SceneFrame& frame, const layers::Part& 
   for (int r = 0; r < 3; ++r) eye_from_source_.row[r].w -= view.eye[r];
   mirrored_ = glm::determinant(dmat3(world_from_source)) < 0;
   normal_from_mesh_ = cofactors(dmat3(world_from_source)) * (mirrored_ ? -1.0 : 1.0);
+  reads_position_ = shader.lit || shader.layout.position >= 0;
+  reads_normal_ = shader.lit && !mesh_->normals.empty();
+  reads_color_ = shader.layout.color >= 0 && !mesh_->colors.empty();
+  reads_uv_ = shader.layout.uv >= 0 && !mesh_->uvs.empty();
 }
 
+template <bool kSkinned>
 Float4 PartVertices::world_normal(int i) const {
   const dvec3 n(mesh_->normals[i]);
   dvec3 world(0);
-  if (joint_normals_.empty() || mesh_->joints.empty()) {
+  if (!kSkinned || joint_normals_.empty() || mesh_->joints.empty()) {
     world = normal_from_mesh_ * n;
   } else {
     for (int k = 0; k < 4; ++k)
@@ -178,14 +183,17 @@ Float4 PartVertices::world_normal(int i) const {
   return length > 0 && std::isfinite(length) ? float4(layers::vec3(world / length)) : splat(0);
 }
 
+template <bool kSkinned>
 ShadePoint PartVertices::shade_point(int i) const {
   ShadePoint point;
-  point.position = point.lit_at = float4(layers::vec3(eye_position(i)));
-  if (!mesh_->normals.empty()) point.normal = world_normal(i);
-  if (!mesh_->colors.empty()) point.vertex_color = float4(mesh_->colors[i], 1);
-  if (!mesh_->uvs.empty())
+  if (reads_position_) point.position = point.lit_at = float4(layers::vec3(eye_position<kSkinned>(i)));
+  if (reads_normal_) point.normal = world_normal<kSkinned>(i);
+  if (reads_color_) point.vertex_color = float4(mesh_->colors[i], 1);
+  if (reads_uv_)
     point.uv = Float4{usable_coordinate(mesh_->uvs[i].x), usable_coordinate(mesh_->uvs[i].y), 0, 0};
   return point;
 }
+template ShadePoint PartVertices::shade_point<true>(int i) const;
+template ShadePoint PartVertices::shade_point<false>(int i) const;
 
 }  // namespace talisman::chunker

@@ -14,19 +14,10 @@
 #include <vector>
 
 #include "chunker/clip.h"
+#include "chunker/rows34.h"
 #include "chunker/shade.h"
 
 namespace talisman::chunker {
-
-/// Rows of a 3×4 matrix.
-struct Rows34 {
-  layers::dvec4 row[3];
-  layers::dvec3 operator()(const layers::dvec3& p) const {
-    return {row[0].x * p.x + row[0].y * p.y + row[0].z * p.z + row[0].w,
-            row[1].x * p.x + row[1].y * p.y + row[1].z * p.z + row[1].w,
-            row[2].x * p.x + row[2].y * p.y + row[2].z * p.z + row[2].w};
-  }
-};
 
 Rows34 operator*(const Rows34& outer, const layers::dmat4& inner);
 
@@ -67,29 +58,49 @@ struct ProjectedVertex {
   std::uint8_t flags = 0;
 };
 
+/// Never kCutAway: few views cut, so who draws one that does asks ClipRegion::kept.
 ProjectedVertex project(const SpriteView& view, const layers::dvec3& point);
 
 /// Of a vertex made by clip_triangle: it lies on the border of the region up to rounding; this puts it there.
 ProjectedVertex project_cut(const SpriteView& view, layers::dvec3 point);
 
-/// The vertices of one part.
+/// The vertices of one part. Whether they are skinned is asked once, by the caller, not at each of them.
 class PartVertices {
  public:
-  PartVertices(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view);
+  /// No more of a vertex is read than `shader` asks for; by default its place alone.
+  PartVertices(const layers::SceneFrame& frame, const layers::Part& part, const SpriteView& view,
+               const Shader& shader = {});
 
   int size() const { return static_cast<int>(mesh_->positions.size()); }
   const layers::Mesh& mesh() const { return *mesh_; }
-  layers::dvec3 sprite_point(int i) const { return sprite_from_source_(source(i)); }
+  bool skinned() const { return layers::is_built(layers::Effect::Skinning) && !world_.empty(); }
+  template <bool kSkinned>
+  layers::dvec3 sprite_point(int i) const {
+    return sprite_from_source_(source<kSkinned>(i));
+  }
+  layers::dvec3 sprite_point(int i) const {
+    return skinned() ? sprite_point<true>(i) : sprite_point<false>(i);
+  }
+  /// World axes, relative to the eye.
+  template <bool kSkinned>
   layers::dvec3 eye_position(int i) const {
-    return eye_from_source_(source(i));
-  }  ///< world axes, relative to the eye
+    return eye_from_source_(source<kSkinned>(i));
+  }
+  layers::dvec3 eye_position(int i) const {
+    return skinned() ? eye_position<true>(i) : eye_position<false>(i);
+  }
+  template <bool kSkinned>
   ShadePoint shade_point(int i) const;
+  ShadePoint shade_point(int i) const { return skinned() ? shade_point<true>(i) : shade_point<false>(i); }
   bool mirrored() const { return mirrored_; }  ///< the node turns the mesh inside out
 
  private:
+  template <bool kSkinned>
   layers::dvec3 source(int i) const {
-    return world_.empty() ? layers::dvec3(mesh_->positions[i]) : world_[i];
+    if constexpr (kSkinned) return world_[i];
+    return layers::dvec3(mesh_->positions[i]);
   }
+  template <bool kSkinned>
   Float4 world_normal(int i) const;
 
   const layers::Mesh* mesh_;
@@ -98,6 +109,7 @@ class PartVertices {
   Rows34 sprite_from_source_, eye_from_source_;
   layers::dmat3 normal_from_mesh_{1.0};
   bool mirrored_ = false;
+  bool reads_position_ = false, reads_normal_ = false, reads_color_ = false, reads_uv_ = false;
 };
 
 }  // namespace talisman::chunker

@@ -16,8 +16,8 @@
 #include <cstdint>
 
 #include "chunker/float4.h"
+#include "chunker/interpolator.h"
 #include "chunker/samples.h"
-#include "chunker/shade.h"
 
 namespace talisman::chunker {
 

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "layers/built_effects.h"
 #include "layers/point_shading.h"
 #include "warp/color.h"
 
@@ -227,7 +228,8 @@ double position_change_rad(const dvec3& then_offset, const dvec3& now_offset, do
 
 Photometric photometric_of(const LayerState& then, const LayerState& now, const LayerBound& bound,
                            const PhotometricOptions& options) {
-  if (!bound.surface) return not_computed(bound.surface_why_not);
+  if (!layers::is_built(layers::Effect::ColorWarp) || !bound.surface)
+    return not_computed(bound.surface_why_not);
   if (now.point_colors.empty() || then.point_colors.size() != now.point_colors.size())
     return not_computed("the layer has no characteristic points");
   Photometric result;

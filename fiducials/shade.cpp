@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "layers/built_effects.h"
 #include "layers/clip.h"
 
 namespace talisman::fiducials {
@@ -17,6 +18,11 @@ using layers::dvec3;
 using layers::dvec4;
 using layers::LayerState;
 using layers::ShadeTrace;
+
+/// Effects whose traces move over a surface.
+constexpr bool kAnyTrace = layers::is_built(layers::Effect::ShadowMap) ||
+                           layers::is_built(layers::Effect::SpecularLayer) ||
+                           layers::is_built(layers::Effect::ReflectionMap);
 
 bool exists(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
@@ -94,7 +100,7 @@ void add_trace(const Projector& projector, const LayerState& now, const ShadeTra
 
 ShadeMotion shade_motion(const LayerState& then, const LayerState& now) {
   ShadeMotion motion;
-  if (then.traces.empty() && now.traces.empty()) {
+  if (!kAnyTrace || (then.traces.empty() && now.traces.empty())) {
     motion.why_not = "no shadow, highlight or reflection in it moves by itself";
     return motion;
   }

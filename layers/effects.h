@@ -7,43 +7,15 @@
 /// scene, its layers and the options of the run alone, before anything is drawn, and names for every effect
 /// the element that calls for it or that none does.
 
-#include <array>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "layers/effect.h"
 #include "layers/layer.h"
 
 namespace talisman::layers {
-
-enum class Effect {
-  Texture,            ///< some drawn part has a textured material
-  MipFilter,          ///< the same textures, filtered when minified
-  Lighting,           ///< some drawn part is lit: normals and lights are evaluated
-  SpecularHighlight,  ///< some lit material has specular > 0
-  Translucency,       ///< opacity < 1 or a texture with alpha
-  Skinning,           ///< some drawn part has a skin
-  LayerResolution,    ///< some layer asks for a resolution other than the display's
-  MotionBlur,         ///< some layer has an open shutter: sampled along its motion
-  SpriteCompression,  ///< the run keeps its sprites compressed
-  VisibilitySort,     ///< some layers can overlap, and the author's groups do not order them
-  ColorWarp,    ///< the light on some layer can change: colour warp and photometric fiducial [LS97 4.3, 5.2]
-  ShadowMap,    ///< some light casts shadows, something casts and something receives: a pass per light
-  ShadowLayer,  ///< … and some layer factors them: black sprites that darken their base
-  SpecularLayer,    ///< some layer factors its highlights
-  ReflectionMap,    ///< a flat layer mirrors others: a pass with the mirrored camera for each of its renders
-  ReflectionLayer,  ///< … and factors the mirrored picture
-  TextureLayers,    ///< some layer factors the second texture of its material
-};
-inline constexpr std::array kAllEffects = {
-    Effect::Texture,           Effect::MipFilter,      Effect::Lighting,        Effect::SpecularHighlight,
-    Effect::Translucency,      Effect::Skinning,       Effect::LayerResolution, Effect::MotionBlur,
-    Effect::SpriteCompression, Effect::VisibilitySort, Effect::ColorWarp,       Effect::ShadowMap,
-    Effect::ShadowLayer,       Effect::SpecularLayer,  Effect::ReflectionMap,   Effect::ReflectionLayer,
-    Effect::TextureLayers};
-std::string_view name(Effect effect);  ///< "texture", "mip_filter", …
 
 struct EffectCall {
   Effect effect = Effect::Texture;
@@ -55,6 +27,8 @@ struct EffectCall {
 /// The effects that a run asks for, whatever the scene.
 struct RunEffects {
   std::optional<int> compression_quality;  ///< empty: sprites are kept as they are
+  bool mip_filter = true;     ///< false: the run looks textures up in their finest level only
+  bool follows_light = true;  ///< false: neither a colour warp nor a fiducial of the light is asked for
 };
 
 /// Are there two layers that the author's groups do not order? Cost: O(layers).

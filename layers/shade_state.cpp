@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "layers/built_effects.h"
 #include "layers/shading.h"
 
 namespace talisman::layers {
@@ -48,6 +49,16 @@ dvec3 hit_along(const Plane& plane, const dvec3& from, const dvec3& direction) {
   return hit(plane, from, from + direction);
 }
 
+/// Effects that a build leaves out touch no layer.
+bool looks_up_shadows(const Layer& layer) { return is_built(Effect::ShadowMap) && !layer.casters.empty(); }
+bool mirrors(const Layer& layer) { return is_built(Effect::ReflectionMap) && layer.holds.reflection; }
+bool is_shadow(const Layer& layer) {
+  return is_built(Effect::ShadowLayer) && layer.kind == LayerKind::Shadow;
+}
+bool is_highlight(const Layer& layer) {
+  return is_built(Effect::SpecularLayer) && layer.kind == LayerKind::Specular;
+}
+
 /// One receiver at one instant.
 class Receiver {
  public:
@@ -80,12 +91,12 @@ class Receiver {
     const Scene& scene = *frame_.scene;
     for (std::size_t i = 0; i < scene.lights.size(); ++i) {
       const int light = static_cast<int>(i);
-      if (layer_.holds.shadows && scene.lights[i].casts_shadow && (layer_.light < 0 || layer_.light == light))
+      if (looks_up_shadows(layer_) && layer_.holds.shadows && scene.lights[i].casts_shadow &&
+          (layer_.light < 0 || layer_.light == light))
         for (const int caster : layer_.casters) add(traces, shadow(light, caster));
-      if (layer_.kind == LayerKind::Specular && scene.lights[i].kind != Light::Kind::Ambient)
-        add(traces, highlight(light));
+      if (is_highlight(layer_) && scene.lights[i].kind != Light::Kind::Ambient) add(traces, highlight(light));
     }
-    if (layer_.holds.reflection && plane_)
+    if (mirrors(layer_) && plane_)
       for (const int source : layer_.reflected) add(traces, reflection(source));
     return traces;
   }
@@ -183,7 +194,8 @@ class Receiver {
 
 std::vector<dmat4> influence_matrices(const SceneFrame& frame, const LayerSet& set, const Layer& layer) {
   std::vector<dmat4> matrices;
-  if (!layer.casters.empty()) matrices = part_matrices(frame, set.casting_parts);
+  if (looks_up_shadows(layer)) matrices = part_matrices(frame, set.casting_parts);
+  if (!is_built(Effect::ReflectionMap)) return matrices;
   for (const int id : layer.reflected) {
     const std::vector<dmat4> of_layer = part_matrices(frame, set.layers[id].parts);
     matrices.insert(matrices.end(), of_layer.begin(), of_layer.end());
@@ -203,10 +215,9 @@ void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<
   for (const Layer& layer : set.layers) {
     LayerState& state = states[layer.id];
     if (state.layer != layer.id) continue;  // an aggregate that does not exist now
-    if (layer.kind == LayerKind::Shadow) state.lights = {frame.lights[layer.light]};
-    if (layer.holds.reflection)
-      state.lights = frame.lights;  // of what is mirrored, however the mirror is lit
-    if (layer.casters.empty() && layer.reflected.empty() && layer.kind != LayerKind::Specular) continue;
+    if (is_shadow(layer)) state.lights = {frame.lights[layer.light]};
+    if (mirrors(layer)) state.lights = frame.lights;  // of what is mirrored, however the mirror is lit
+    if (!looks_up_shadows(layer) && layer.reflected.empty() && !is_highlight(layer)) continue;
     state.world_from_influence = influence_matrices(frame, set, layer);
     const Receiver receiver(frame, set, states, layer);
     state.world_from_receiver = receiver.world_from_receiver();

@@ -6,6 +6,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "layers/built_effects.h"
 #include "layers/clip.h"
 #include "layers/shading.h"
 
@@ -18,6 +19,7 @@ bool is_finite(const dvec4& v) {
 
 void capture_appearance(const SceneFrame& frame, const Layer& layer, LayerState& state) {
   state.world_from_part = part_matrices(frame, layer.parts);
+  if (!is_built(Effect::Lighting) || frame.lights.empty()) return;
   if (any_part(*frame.scene, layer, is_lit)) state.lights = frame.lights;
 }
 
@@ -39,9 +41,10 @@ void capture_points(std::vector<dvec3> world_points, LayerState& state) {
 
 /// Normals and colours of the characteristic points, where the bound asks for them.
 void capture_shading(const SceneFrame& frame, const LayerBound& bound, LayerState& state) {
-  if (state.world_points.empty() || !(bound.surface || bound.follows_faces)) return;
+  const bool shaded = is_built(Effect::ColorWarp) && bound.surface;
+  if (state.world_points.empty() || !(shaded || bound.follows_faces)) return;
   state.world_from_body = world_from_bodies(frame, bound);
-  if (!bound.surface) return;
+  if (!shaded) return;
   state.world_normals = point_normals(state.world_points, bound.hull, state.world_from_body);
   state.point_colors.reserve(state.world_points.size());
   for (std::size_t i = 0; i < state.world_points.size(); ++i)
@@ -142,6 +145,7 @@ std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> p
   std::vector<dmat4> matrices;
   matrices.reserve(parts.size());
   for (const int part : parts) matrices.push_back(frame.world_from_node[scene.parts[part].node]);
+  if (!is_built(Effect::Skinning) || scene.skins.empty()) return matrices;
   for (const int part : parts) {
     if (scene.parts[part].skin < 0) continue;
     const auto palette = joint_palette(frame, scene.parts[part]);

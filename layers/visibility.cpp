@@ -289,6 +289,7 @@ void count_order(VisibilityOrder& out, const KeptPairs& kept) {
 
 VisibilityOrder VisibilitySorter::sort(const dvec3& eye, std::span<const Occluder> occluders,
                                        std::span<const ExplicitPair> pairs) {
+  if (!state_) state_ = std::make_unique<State>(options_);
   State& s = *state_;
   ++s.frame;
   s.eye = finite(eye) ? eye : dvec3{0, 0, 0};
@@ -315,12 +316,12 @@ VisibilityOrder VisibilitySorter::sort(const dvec3& eye, std::span<const Occlude
   return out;
 }
 
-VisibilitySorter::VisibilitySorter(const VisibilityOptions& options)
-    : state_(std::make_unique<State>(options)) {}
+VisibilitySorter::VisibilitySorter(const VisibilityOptions& options) : options_(options) {}
 VisibilitySorter::VisibilitySorter(const VisibilitySorter& other)
-    : state_(std::make_unique<State>(*other.state_)) {}
+    : options_(other.options_), state_(other.state_ ? std::make_unique<State>(*other.state_) : nullptr) {}
 VisibilitySorter::VisibilitySorter(VisibilitySorter&&) noexcept = default;
 VisibilitySorter& VisibilitySorter::operator=(VisibilitySorter other) noexcept {
+  options_ = other.options_;
   state_ = std::move(other.state_);
   return *this;
 }

@@ -123,7 +123,7 @@ struct VisibilityOrder {
 /// little, and O(p · iterations) for each pair whose last answer may no longer hold; memory O(n p + m).
 class VisibilitySorter {
  public:
-  explicit VisibilitySorter(const VisibilityOptions& options = {});
+  explicit VisibilitySorter(const VisibilityOptions& options = {});  ///< keeps nothing before the first sort
   VisibilitySorter(const VisibilitySorter& other);
   VisibilitySorter(VisibilitySorter&& other) noexcept;
   VisibilitySorter& operator=(VisibilitySorter other) noexcept;
@@ -135,7 +135,8 @@ class VisibilitySorter {
 
  private:
   struct State;
-  std::unique_ptr<State> state_;
+  VisibilityOptions options_;
+  std::unique_ptr<State> state_;  ///< null before the first sort
 };
 
 }  // namespace talisman::layers

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/aggregate.h"
+#include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/shading.h"
 #include "sequences/layer_planning.h"
@@ -77,25 +78,27 @@ std::string why_merged(const Pipeline& pipeline, const MergedComponent& componen
 
 // --- Ordering ---
 
+/// `with_bodies`: for the sort; the groups alone need none.
 std::vector<layers::Occluder> occluders_in_view(const Pipeline& authored,
-                                                const std::vector<LayerState>& states) {
+                                                const std::vector<LayerState>& states, bool with_bodies) {
   std::vector<layers::Occluder> occluders;
   for (const Layer& layer : authored.layers.layers) {
     const LayerState& state = states[layer.id];
     if (!state.touches_display || layer.base >= 0) continue;  // shade layers follow their bases
-    occluders.push_back(
-        {layer.id, layer.group, layers::convex_bodies(authored.bounds[layer.id], state.world_points)});
+    occluders.push_back({layer.id, layer.group, {}});
+    if (with_bodies)
+      occluders.back().bodies = layers::convex_bodies(authored.bounds[layer.id], state.world_points);
   }
   return occluders;
 }
 
 /// What the groups alone say, farthest group first; inside a group by id.
 std::vector<int> by_group(std::span<const layers::Occluder> occluders) {
+  std::vector<std::pair<layers::OrderGroup, int>> ranked;
+  for (const layers::Occluder& occluder : occluders) ranked.emplace_back(occluder.group, occluder.layer);
+  std::sort(ranked.begin(), ranked.end());
   std::vector<int> order;
-  for (const auto group :
-       {layers::OrderGroup::Background, layers::OrderGroup::Normal, layers::OrderGroup::Foreground})
-    for (const layers::Occluder& occluder : occluders)
-      if (occluder.group == group) order.push_back(occluder.layer);
+  for (const auto& [group, layer] : ranked) order.push_back(layer);
   return order;
 }
 
@@ -237,9 +240,10 @@ FrameOrder order_layers(const Pipeline& authored, PipelineState& state, int fram
   FrameOrder order;
   order.merged_into.assign(authored.layers.layers.size(), -1);
   const std::vector<LayerState>& states = states_at(authored, state, frame);
-  const std::vector<layers::Occluder> occluders = occluders_in_view(authored, states);
-  const bool one_pass = authored.settings.regulator.policy == regulator::Policy::Direct;
-  if (!authored.sorts_visibility || one_pass) {
+  const bool sorts = layers::is_built(layers::Effect::VisibilitySort) && authored.sorts_visibility &&
+                     authored.settings.regulator.policy != regulator::Policy::Direct;
+  const std::vector<layers::Occluder> occluders = occluders_in_view(authored, states, sorts);
+  if (!sorts) {
     order.back_to_front = by_group(occluders);
   } else {
     const layers::dvec3 eye(states.front().camera.world_from_camera[3]);

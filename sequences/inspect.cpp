@@ -8,6 +8,7 @@
 
 #include "layers/effects.h"
 #include "regulator/profile.h"
+#include "sequences/missing_effects.h"
 
 namespace talisman::sequences {
 
@@ -24,7 +25,7 @@ const char* name_of(layers::OrderGroup group) {
     case layers::OrderGroup::Foreground:
       return "foreground";
   }
-  return "?";
+  return "own";
 }
 
 const char* name_of(layers::BoundKind kind) {
@@ -42,6 +43,7 @@ const char* name_of(layers::BoundKind kind) {
 std::vector<layers::EffectCall> effects_of(const Sequence& s) {
   layers::RunEffects run;
   if (s.compression) run.compression_quality = s.compression->quality;
+  run.follows_light = regulator::asks_for_light(s.regulator);
   return layers::effects_called_for(*s.scene, s.layers.layers, run);
 }
 
@@ -64,6 +66,8 @@ Memory memory_of(const layers::Scene& scene) {
     memory.texture_bytes += static_cast<std::int64_t>(texture.rgba.size());
   return memory;
 }
+
+bool has_effect(layers::Effect effect) { return built_effects()[static_cast<std::size_t>(effect)]; }
 
 std::string line(const char* pattern, auto... values) {
   char text[600];
@@ -96,8 +100,9 @@ std::string inspection_text(const Sequence& s) {
     text += line("; %d parts are in no layer and are not drawn", s.layers.unassigned_parts);
   text += "\n\n  effect               called  why\n";
   for (const layers::EffectCall& call : effects_of(s))
-    text += line("  %-20s %-6s  %s\n", std::string(layers::name(call.effect)).c_str(),
-                 call.called ? "yes" : "no", call.why.c_str());
+    text += line("  %-20s %-6s  %s%s\n", std::string(layers::name(call.effect)).c_str(),
+                 call.called ? "yes" : "no", call.why.c_str(),
+                 has_effect(call.effect) ? "" : " (not in this build)");
   return text;
 }
 
@@ -113,7 +118,8 @@ std::string inspection_json(const Sequence& s) {
                           {"resolution_scale", layer.preferences.resolution_scale}});
   Json effects = Json::object();
   for (const layers::EffectCall& call : effects_of(s))
-    effects[std::string(layers::name(call.effect))] = {{"called", call.called}, {"why", call.why}};
+    effects[std::string(layers::name(call.effect))] = {
+        {"called", call.called}, {"why", call.why}, {"built", has_effect(call.effect)}};
   const Json json = {{"schema", "talisman.inspect/1"},
                      {"sequence", s.name},
                      {"file", s.file},

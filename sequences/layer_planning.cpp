@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "fiducials/fiducials.h"
+#include "layers/built_effects.h"
 #include "layers/predict.h"
 #include "layers/shade_state.h"
 #include "regulator/resolution.h"
@@ -23,6 +24,15 @@ using layers::SpritePlacement;
 using regulator::LayerAssessment;
 using regulator::Policy;
 
+bool is_blurred(const layers::LayerPreferences& preferences) {
+  return layers::is_built(layers::Effect::MotionBlur) && preferences.motion_blur > 0;
+}
+
+/// Texels per display pixel that the layer's author asks for.
+double own_resolution(const Layer& layer) {
+  return layers::is_built(layers::Effect::LayerResolution) ? layer.preferences.resolution_scale : 1;
+}
+
 /// Extents grow by velocity × `expected_reuse`; `soon` is the state one frame later. `resolution` is
 /// relative to what the layer's author asks for.
 SpritePlacement place_layer(const Pipeline& pipeline, const LayerState& now, const LayerState& soon,
@@ -31,8 +41,8 @@ SpritePlacement place_layer(const Pipeline& pipeline, const LayerState& now, con
   layers::ExtentOptions extents = pipeline.settings.extents;
   extents.expected_reuse_frames = expected_reuse * layer.preferences.share_of_expected_motion;
   layers::PlacementOptions placement = pipeline.settings.placement;
-  placement.resolution_scale *= layer.preferences.resolution_scale * resolution;
-  if (layer.preferences.motion_blur > 0) apply_motion_blur(pipeline, now, placement);
+  placement.resolution_scale *= own_resolution(layer) * resolution;
+  if (is_blurred(layer.preferences)) apply_motion_blur(pipeline, now, placement);
   return layers::place_sprite(now, soon, pipeline.bounds[layer.id].hull, extents, placement);
 }
 
@@ -40,7 +50,7 @@ SpritePlacement place_layer(const Pipeline& pipeline, const LayerState& now, con
 regulator::LayerCost estimated_cost(const Layer& layer, const LayerState& now) {
   const layers::RectD display{{0, 0}, layers::dvec2(now.view.display_px)};
   const layers::RectD seen = layers::intersection(now.screen_bounds_px, display);
-  const double scale = layer.preferences.resolution_scale;
+  const double scale = own_resolution(layer);
   return cost_of(layer,
                  {static_cast<int>(seen.width() * scale + 1), static_cast<int>(seen.height() * scale + 1)});
 }
@@ -195,7 +205,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
   else
     assessment.fitted = warp::fit(then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
   assessment.fiducials = fiducials::assess(then, now, placement, matched, assessment.fitted);
-  if (assessment.preferences.motion_blur > 0) judge_motion_blur(pipeline, then, now, assessment);
+  if (is_blurred(assessment.preferences)) judge_motion_blur(pipeline, then, now, assessment);
   assess_light_and_faces(pipeline, then, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =

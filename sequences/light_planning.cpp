@@ -4,6 +4,7 @@
 #include "fiducials/photometric.h"
 #include "fiducials/turned_faces.h"
 #include "layers/animation.h"
+#include "layers/built_effects.h"
 #include "layers/light_change.h"
 
 namespace talisman::sequences {
@@ -33,7 +34,7 @@ void follow_light_and_faces(const layers::Scene& scene, const layers::LayerSet& 
     }
     const layers::LightChange change = layers::light_change_of(scene, layer, carriers);
     bounds[i].surface_why_not = change.why_not;
-    if (!change.possible()) continue;
+    if (!layers::is_built(layers::Effect::ColorWarp) || !change.possible()) continue;
     bounds[i].surface = layers::mean_surface(scene, layer);
     if (layer.factored.specular) bounds[i].surface->specular = layers::dvec3(0.0);  // in a sprite of its own
   }
@@ -44,8 +45,10 @@ void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerState& 
   const layers::LayerBound& bound = pipeline.bounds[now.layer];
   report.photometric =
       fiducials::photometric_of(then, now, bound, {.color_warp = pipeline.settings.regulator.color_warp});
-  name(pipeline.scene, report.photometric.color_light);
-  name(pipeline.scene, report.photometric.angle_light);
+  if (report.photometric.computed) {
+    name(pipeline.scene, report.photometric.color_light);
+    name(pipeline.scene, report.photometric.angle_light);
+  }
   if (bound.follows_faces) report.turned = fiducials::turned_faces_of(then, now, bound.hull);
 }
 

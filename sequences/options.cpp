@@ -7,6 +7,7 @@
 
 #include <glm/trigonometric.hpp>
 #include "regulator/budget.h"
+#include "sequences/missing_effects.h"
 
 namespace talisman::sequences {
 
@@ -205,6 +206,7 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
     throw InputError("--overlay is drawn on png frames, but --format is " + line.format);
   if (line.threads < 0)
     throw InputError("--threads is " + std::to_string(line.threads) + ", must be at least 0 (0: all cores)");
+  require_built_effects(sequence, settings);
   return run;
 }
 

@@ -36,7 +36,7 @@ struct ResolvedRun {
 };
 
 /// Checks every value and joins it with the sequence's defaults. Throws InputError that names option, value
-/// and rule.
+/// and rule, or the effect that the run calls for and this build lacks.
 ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only);
 
 }  // namespace talisman::sequences

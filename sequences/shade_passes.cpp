@@ -9,6 +9,7 @@
 
 #include "chunker/mirror.h"
 #include "layers/animation.h"
+#include "layers/built_effects.h"
 #include "sequences/step.h"
 
 namespace talisman::sequences {
@@ -26,11 +27,17 @@ using layers::LayerKind;
 using layers::SceneFrame;
 using layers::SpritePlacement;
 
+/// A term whose effect the build leaves out is none of a layer's.
+constexpr bool kShadows = layers::is_built(layers::Effect::ShadowMap);
+constexpr bool kMirrors = layers::is_built(layers::Effect::ReflectionMap);
+constexpr bool kTextureLayers = layers::is_built(layers::Effect::TextureLayers);
+
 ShadeTerm term_of(const Layer& layer) {
   switch (layer.kind) {
     case LayerKind::Geometry:
-      if (layer.factored.second_texture) return ShadeTerm::Texture1;
-      return layer.factored.specular ? ShadeTerm::Base : ShadeTerm::Full;
+      if (kTextureLayers && layer.factored.second_texture) return ShadeTerm::Texture1;
+      return layers::is_built(layers::Effect::SpecularLayer) && layer.factored.specular ? ShadeTerm::Base
+                                                                                        : ShadeTerm::Full;
     case LayerKind::Shadow:
       return ShadeTerm::Shadow;
     case LayerKind::Specular:
@@ -43,7 +50,7 @@ ShadeTerm term_of(const Layer& layer) {
   return ShadeTerm::Full;
 }
 
-bool any_shadows(const Pipeline& pipeline) { return !pipeline.layers.casting_parts.empty(); }
+bool any_shadows(const Pipeline& pipeline) { return kShadows && !pipeline.layers.casting_parts.empty(); }
 
 std::int64_t casting_polygons(const Pipeline& pipeline) {
   std::int64_t polygons = 0;
@@ -175,6 +182,7 @@ void for_each_held(const Pipeline& pipeline, const Layer& layer, const Visit& vi
 
 std::vector<const Layer*> mirrors_in(const Pipeline& pipeline, const Layer& layer) {
   std::vector<const Layer*> mirrors;
+  if constexpr (!kMirrors) return mirrors;
   for_each_held(pipeline, layer, [&](const Layer& held) {
     if (held.holds.reflection) mirrors.push_back(&held);
   });
@@ -183,6 +191,7 @@ std::vector<const Layer*> mirrors_in(const Pipeline& pipeline, const Layer& laye
 
 /// The factors with which the compositor blends the textures of `base` at a time, if it does.
 void add_blend(const Pipeline& pipeline, const Layer& base, double time_s, Contents& contents) {
+  if constexpr (!kTextureLayers) return;
   for_each_shade(pipeline, base.id, [&](const Layer& shade) {
     if (shade.kind != LayerKind::Texture) return;
     const float first = multipliers_at(base, time_s).color.x, second = multipliers_at(shade, time_s).color.x;
@@ -194,8 +203,8 @@ void add_blend(const Pipeline& pipeline, const Layer& base, double time_s, Conte
 Contents all_terms_of(const Pipeline& pipeline, std::span<const int> geometry_layers, double time_s) {
   Contents contents;
   const auto hold = [&](const Layer& layer) {
-    contents.shadows = contents.shadows || layer.holds.shadows;
-    if (layer.holds.reflection) contents.mirrors.push_back(&layer);
+    contents.shadows = contents.shadows || (kShadows && layer.holds.shadows);
+    if (kMirrors && layer.holds.reflection) contents.mirrors.push_back(&layer);
   };
   for (const int id : geometry_layers) {
     const Layer& layer = pipeline.layers.layers[id];
@@ -213,7 +222,9 @@ Contents contents_of(const Pipeline& pipeline, const Layer& layer, double time_s
     contents.parts = layer.parts;  // in their own order
     return contents;
   }
-  return {layer.parts, term_of(layer), layer.light, layer.holds.shadows, mirrors_in(pipeline, layer), {}};
+  return {
+      layer.parts, term_of(layer), layer.light, kShadows && layer.holds.shadows, mirrors_in(pipeline, layer),
+      {}};
 }
 
 chunker::RenderResult draw(const Pipeline& pipeline, ShadowMapStore& maps,
@@ -255,7 +266,8 @@ std::vector<ShadowMapKey> shadow_map_keys(const Pipeline& pipeline, const SceneF
 }
 
 std::vector<int> shadow_lights(const Pipeline& pipeline, const Layer& layer) {
-  const bool looks_up = layer.holds.shadows || (layer.holds.reflection && any_shadows(pipeline));
+  const bool looks_up =
+      kShadows && (layer.holds.shadows || (kMirrors && layer.holds.reflection && any_shadows(pipeline)));
   return looks_up ? lights_with_maps(pipeline, layer.light) : std::vector<int>{};
 }
 
@@ -317,7 +329,7 @@ chunker::RenderResult draw_in_one_pass(const Pipeline& pipeline, ShadowMapStore&
 SpriteMultipliers multipliers_at(const Layer& layer, double time_s) {
   SpriteMultipliers m;
   if (!layer.fade.values.empty()) m.alpha = static_cast<float>(layers::value_at(layer.fade, time_s));
-  if (!layer.gain.values.empty())
+  if (kTextureLayers && !layer.gain.values.empty())
     m.color = layers::vec3(static_cast<float>(layers::value_at(layer.gain, time_s)));
   m.alpha = std::clamp(m.alpha, 0.0f, 1.0f);
   m.color = glm::clamp(m.color, 0.0f, 1.0f);

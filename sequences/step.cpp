@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 
+#include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/effects.h"
 #include "sequences/direct.h"
@@ -121,11 +122,18 @@ std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineS
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
     SpriteMultipliers multipliers =
         multipliers_at(pipeline.layers.layers[layer], time_of(pipeline, report.frame));
-    multipliers.color *= layers::vec3(decision.shown_color);
+    if constexpr (layers::is_built(layers::Effect::ColorWarp))
+      multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
                      memory.placement.size_px, report.frame - memory.frame_rendered, multipliers});
   }
   return shown;
+}
+
+/// How the run compresses its sprites, or null.
+const chunker::CompressionOptions* compression_of(const Pipeline& pipeline) {
+  const bool called = layers::is_built(layers::Effect::SpriteCompression) && pipeline.settings.compression;
+  return called ? &*pipeline.settings.compression : nullptr;
 }
 
 /// Draws the sprites that this frame shows and the store does not hold yet.
@@ -144,9 +152,9 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
         draw_layer(pipeline, state.shadow_maps, prepared, as_of_now ? now : others.at(key),
                    pipeline.layers.layers[sprite.layer], memory.placement);
     const bool is_late = memory.frame_rendered != report.frame;
-    if (pipeline.settings.compression)
-      keep_compressed(sprite.layer, result.sprite, *pipeline.settings.compression, state.compressed,
-                      state.sprites, is_late ? nullptr : &*report.compression);
+    if (const chunker::CompressionOptions* compression = compression_of(pipeline))
+      keep_compressed(sprite.layer, result.sprite, *compression, state.compressed, state.sprites,
+                      is_late ? nullptr : &*report.compression);
     else
       state.sprites.put(sprite.layer, std::move(result.sprite));
     memory.drawn = true;
@@ -201,13 +209,13 @@ void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& sta
     report.render += picture.render;
     report.times.render_ms = render_watch.ms();
   } else {
-    if (pipeline.settings.compression) report.compression.emplace();
+    if (compression_of(pipeline)) report.compression.emplace();
     draw_missing_sprites(pipeline, state, now, prepared, report);
     report.times.render_ms = render_watch.ms();
     const Stopwatch composite_watch;
     result = composite_shown(pipeline, report, state.sprites);
     report.times.composite_ms = composite_watch.ms();
-    if (report.compression) report.compression->cache = chunks_read(pipeline, report, state.compressed);
+    if (compression_of(pipeline)) report.compression->cache = chunks_read(pipeline, report, state.compressed);
   }
   report.picture = std::move(result.frame);
   report.composite = result.counters;
