@@ -14,11 +14,12 @@ HWY_BEFORE_NAMESPACE();
 namespace talisman::chunker::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-using Lanes32 = hn::CappedTag<std::int32_t, kSamples>;
+using Lanes32 = hn::CappedTag<std::int32_t, kPlaces>;
 using Vec = hn::Vec<Lanes32>;
 
 /// One bit per lane where the sign is clear.
-HWY_INLINE std::uint32_t non_negative_bits(Lanes32 d, Vec v) {
+template <class D>
+HWY_INLINE std::uint32_t non_negative_bits(D d, hn::Vec<D> v) {
   HWY_ALIGN std::uint8_t bytes[8];
   hn::StoreMaskBits(d, hn::Gt(v, hn::Set(d, -1)), bytes);
   if (hn::MaxLanes(d) <= 8) return bytes[0];
@@ -27,30 +28,42 @@ HWY_INLINE std::uint32_t non_negative_bits(Lanes32 d, Vec v) {
   return bits;
 }
 
-/// The edges, with what is needed to judge whole texels: the largest and least of the 16 sample offsets.
+/// The edges, with what is needed to judge whole texels: the largest and least of the sample offsets.
+template <int kCount>
 struct EdgeVectors {
-  HWY_ALIGN std::int32_t sample[3][kSamples];
+  HWY_ALIGN std::int32_t sample[3][kPlaces];
   std::int32_t outer[3], inner[3];
 };
 
-HWY_INLINE void make_edge_vectors(const EdgeSet& edges, EdgeVectors& v) {
+template <int kCount>
+HWY_INLINE void make_edge_vectors(const EdgeSet& edges, EdgeVectors<kCount>& v) {
   for (int k = 0; k < 3; ++k) {
     const std::int32_t a = edges.a[k], b = edges.b[k];
-    for (int s = 0; s < kSamples; ++s) v.sample[k][s] = a * (s & 3) + b * (s >> 2);
-    v.outer[k] = std::max(0, 3 * a) + std::max(0, 3 * b);
-    v.inner[k] = std::min(0, 3 * a) + std::min(0, 3 * b);
+    for (int s = 0; s < kCount; ++s) {
+      const int place = Samples<kCount>::place(s);
+      v.sample[k][s] = a * (place & 3) + b * (place >> 2);
+    }
+    if constexpr (kCount == kPlaces) {  // at the corners of the lattice
+      v.outer[k] = std::max(0, 3 * a) + std::max(0, 3 * b);
+      v.inner[k] = std::min(0, 3 * a) + std::min(0, 3 * b);
+    } else {
+      v.outer[k] = *std::max_element(v.sample[k], v.sample[k] + kCount);
+      v.inner[k] = *std::min_element(v.sample[k], v.sample[k] + kCount);
+    }
   }
 }
 
-/// The mask of one texel whose first sample has the edge values e.
-HWY_INLINE std::uint16_t mask_of(Lanes32 d, const EdgeVectors& v, std::int32_t e0, std::int32_t e1,
+/// The mask of one texel whose first place has the edge values e.
+template <int kCount>
+HWY_INLINE std::uint16_t mask_of(const EdgeVectors<kCount>& v, std::int32_t e0, std::int32_t e1,
                                  std::int32_t e2) {
+  const hn::CappedTag<std::int32_t, kCount> d;
   std::uint32_t mask = 0;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  for (int s = 0; s < kSamples; s += lanes) {
-    const Vec v0 = hn::Add(hn::Set(d, e0), hn::Load(d, v.sample[0] + s));
-    const Vec v1 = hn::Add(hn::Set(d, e1), hn::Load(d, v.sample[1] + s));
-    const Vec v2 = hn::Add(hn::Set(d, e2), hn::Load(d, v.sample[2] + s));
+  for (int s = 0; s < kCount; s += lanes) {
+    const auto v0 = hn::Add(hn::Set(d, e0), hn::Load(d, v.sample[0] + s));
+    const auto v1 = hn::Add(hn::Set(d, e1), hn::Load(d, v.sample[1] + s));
+    const auto v2 = hn::Add(hn::Set(d, e2), hn::Load(d, v.sample[2] + s));
     mask |= non_negative_bits(d, hn::Or(hn::Or(v0, v1), v2)) << s;
   }
   return static_cast<std::uint16_t>(mask);
@@ -65,9 +78,10 @@ HWY_INLINE Vec ramp(Lanes32 d, std::int32_t a) { return hn::Mul(hn::Iota(d, 0), 
 
 /// Texels [x0, x1] of one row that may be touched, and those that are full, many texels at a time. Lanes
 /// beyond the chunk may wrap around; their bits are cut off at the end.
-HWY_INLINE void classify_row(Lanes32 d, const EdgeSet& edges, const EdgeVectors& v, const Ramps& ramps,
-                             const std::int32_t e[3], int x0, int x1, std::uint32_t& touched,
-                             std::uint32_t& full) {
+template <int kCount>
+HWY_INLINE void classify_row(Lanes32 d, const EdgeSet& edges, const EdgeVectors<kCount>& v,
+                             const Ramps& ramps, const std::int32_t e[3], int x0, int x1,
+                             std::uint32_t& touched, std::uint32_t& full) {
   const int lanes = static_cast<int>(hn::Lanes(d));
   std::uint64_t some = 0, all = 0;
   for (int x = x0; x <= x1; x += lanes) {
@@ -88,9 +102,10 @@ HWY_INLINE void classify_row(Lanes32 d, const EdgeSet& edges, const EdgeVectors&
   full = static_cast<std::uint32_t>(all & inside);
 }
 
-void CoverBox(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
+template <int kCount>
+HWY_INLINE void cover_box(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
   const Lanes32 d;
-  EdgeVectors v;
+  EdgeVectors<kCount> v;
   make_edge_vectors(edges, v);
   const Ramps ramps{ramp(d, edges.a[0]), ramp(d, edges.a[1]), ramp(d, edges.a[2])};
   for (int y = box.y0; y <= box.y1; ++y) {
@@ -101,7 +116,7 @@ void CoverBox(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
     for (std::uint32_t left = touched & ~full; left != 0; left &= left - 1) {
       const int x = __builtin_ctz(left);
       const std::uint16_t mask =
-          mask_of(d, v, e[0] + 4 * x * edges.a[0], e[1] + 4 * x * edges.a[1], e[2] + 4 * x * edges.a[2]);
+          mask_of(v, e[0] + 4 * x * edges.a[0], e[1] + 4 * x * edges.a[1], e[2] + 4 * x * edges.a[2]);
       out.mask[y * kChunkSize + x] = mask;
       if (mask == 0) touched &= ~(1u << x);
     }
@@ -109,6 +124,10 @@ void CoverBox(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
     out.full[y] = full;
   }
 }
+
+void Cover1(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<1>(edges, box, out); }
+void Cover4(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<4>(edges, box, out); }
+void Cover16(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<16>(edges, box, out); }
 
 }  // namespace talisman::chunker::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -151,41 +170,21 @@ bool may_cover(const EdgeSet& edges, const LatticeBox& box) {
   return true;
 }
 
-void reduce_samples(const LatticeBox& box, int samples, Coverage& coverage) {
-  for (int y = box.y0; y <= box.y1; ++y)
-    for (std::uint32_t left = coverage.touched[y] & ~coverage.full[y]; left != 0; left &= left - 1) {
-      const int x = __builtin_ctz(left);
-      std::uint16_t& mask = coverage.mask[y * kChunkSize + x];
-      mask = reduced_mask(mask, samples);
-      if (mask == 0) coverage.touched[y] &= ~(1u << x);
-      if (mask == kFullMask) coverage.full[y] |= 1u << x;
-    }
+HWY_EXPORT(Cover1);
+HWY_EXPORT(Cover4);
+HWY_EXPORT(Cover16);
+
+template <>
+void cover<1>(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
+  HWY_DYNAMIC_DISPATCH(Cover1)(edges, box, out);
 }
-
-void cover_scalar(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
-  for (int y = box.y0; y <= box.y1; ++y) {
-    out.touched[y] = out.full[y] = 0;
-    for (int x = box.x0; x <= box.x1; ++x) {
-      std::uint16_t mask = 0;
-      for (int s = 0; s < kSamples; ++s) {
-        const int i = 4 * x + (s & 3), j = 4 * y + (s >> 2);
-        bool inside = true;
-        for (int k = 0; k < 3; ++k) inside = inside && edges.e[k] + edges.a[k] * i + edges.b[k] * j >= 0;
-        mask = static_cast<std::uint16_t>(mask | (inside ? 1 << s : 0));
-      }
-      if (mask != 0) out.touched[y] |= 1u << x;
-      if (mask == kFullMask)
-        out.full[y] |= 1u << x;
-      else
-        out.mask[y * kChunkSize + x] = mask;
-    }
-  }
+template <>
+void cover<4>(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
+  HWY_DYNAMIC_DISPATCH(Cover4)(edges, box, out);
 }
-
-HWY_EXPORT(CoverBox);
-
-void cover(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
-  HWY_DYNAMIC_DISPATCH(CoverBox)(edges, box, out);
+template <>
+void cover<16>(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
+  HWY_DYNAMIC_DISPATCH(Cover16)(edges, box, out);
 }
 
 }  // namespace talisman::chunker

@@ -8,7 +8,7 @@
 namespace talisman::chunker {
 namespace {
 
-/// Half the range of a plane over the 16 samples.
+/// Half the range of a plane over the lattice, at most.
 float spread_of(const DepthPlane& p) { return 0.375f * (std::abs(p.dx) + std::abs(p.dy)); }
 
 bool in_front(const SampleEntry& a, const SampleEntry& b) {
@@ -32,22 +32,30 @@ void insert_sorted(std::vector<SampleEntry>& entries, const SampleEntry& entry) 
 
 }  // namespace
 
+template <int kCount>
 std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b) {
   const float difference = a.z - b.z;
   const float spread = spread_of(a) + spread_of(b);
-  // Beyond the spread, room for the rounding of depth_at: the bounds decide only what sixteen comparisons
+  // Beyond the spread, room for the rounding of depth_at: the bounds decide only what comparisons one by one
   // would.
   const float slack = spread + 1e-6f * (std::abs(a.z) + std::abs(b.z) + spread);
-  if (difference > slack) return kFullMask;
+  if (difference > slack) return Samples<kCount>::kFull;
   if (difference < -slack) return 0;
   std::uint32_t mask = 0;
-  for (int s = 0; s < kSamples; ++s) mask |= (depth_at(a, s) > depth_at(b, s) ? 1u : 0u) << s;
+  for (int s = 0; s < kCount; ++s) {
+    const int place = Samples<kCount>::place(s);
+    mask |= (depth_at(a, place) > depth_at(b, place) ? 1u : 0u) << s;
+  }
   return static_cast<std::uint16_t>(mask);
 }
 
-FragmentBuffer::FragmentBuffer() { first_.fill(-1); }
+template <int kCount>
+FragmentBuffer<kCount>::FragmentBuffer() {
+  first_.fill(-1);
+}
 
-void FragmentBuffer::clear(const LatticeBox& box, int max_fragments, MergeTolerance merge) {
+template <int kCount>
+void FragmentBuffer<kCount>::clear(const LatticeBox& box, int max_fragments, MergeTolerance merge) {
   for (int y = box.y0; y <= box.y1; ++y) {
     covered_[y] = 0;
     std::fill_n(&first_[y * kChunkSize], kChunkSize, -1);
@@ -60,8 +68,9 @@ void FragmentBuffer::clear(const LatticeBox& box, int max_fragments, MergeTolera
   merge_ = merge;
 }
 
-Added FragmentBuffer::add_to_busy(int texel, const Fragment& fragment, bool whole) {
-  if (whole && (!has_base(texel) || nearer_samples(fragment.depth, base_[texel].depth) == kFullMask)) {
+template <int kCount>
+Added FragmentBuffer<kCount>::add_to_busy(int texel, const Fragment& fragment, bool whole) {
+  if (whole && (!has_base(texel) || nearer_samples<kCount>(fragment.depth, base_[texel].depth) == kFull)) {
     set_base(texel, fragment);
     if (first_[texel] >= 0) drop_hidden(texel);
     return Added::BecameBase;
@@ -76,7 +85,8 @@ Added FragmentBuffer::add_to_busy(int texel, const Fragment& fragment, bool whol
   return Added::Stored;
 }
 
-bool FragmentBuffer::merge(Fragment& last, const Fragment& fragment) const {
+template <int kCount>
+bool FragmentBuffer<kCount>::merge(Fragment& last, const Fragment& fragment) const {
   if (last.mask & fragment.mask) return false;
   const DepthPlane &a = last.depth, &b = fragment.depth;
   const float apart = std::abs(a.z - b.z) + 0.5f * (std::abs(a.dx - b.dx) + std::abs(a.dy - b.dy));
@@ -87,14 +97,15 @@ bool FragmentBuffer::merge(Fragment& last, const Fragment& fragment) const {
   return true;
 }
 
-void FragmentBuffer::drop_hidden(int texel) {
+template <int kCount>
+void FragmentBuffer<kCount>::drop_hidden(int texel) {
   const DepthPlane& base = base_[texel].depth;
   std::int32_t* link = &first_[texel];
   while (*link >= 0) {
     const std::int32_t place = *link;
     Fragment& fragment = pool_[place];
     // At equal depth the fragment, being earlier, stays in front.
-    if (fragment.mask & ~nearer_samples(base, fragment.depth)) {
+    if (fragment.mask & ~nearer_samples<kCount>(base, fragment.depth)) {
       link = &fragment.next;
       continue;
     }
@@ -105,7 +116,8 @@ void FragmentBuffer::drop_hidden(int texel) {
   }
 }
 
-std::int32_t FragmentBuffer::allocate() {
+template <int kCount>
+std::int32_t FragmentBuffer<kCount>::allocate() {
   ++live_;
   if (free_ < 0) {
     pool_.emplace_back();
@@ -116,7 +128,8 @@ std::int32_t FragmentBuffer::allocate() {
   return place;
 }
 
-Float4 FragmentBuffer::resolve_busy(int texel) const {
+template <int kCount>
+Float4 FragmentBuffer<kCount>::resolve_busy(int texel) const {
   if (!layers::is_built(layers::Effect::Translucency) || !translucent_) return resolve_opaque(texel);
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
     if (!pool_[i].opaque()) return resolve_translucent(texel);
@@ -124,7 +137,8 @@ Float4 FragmentBuffer::resolve_busy(int texel) const {
 }
 
 /// Pieces of one surface side by side, nothing behind: no sample is covered twice, so no depth is asked for.
-bool FragmentBuffer::fill_disjoint(int texel, std::array<Float4, kSamples>& samples) const {
+template <int kCount>
+bool FragmentBuffer<kCount>::fill_disjoint(int texel, Colors& samples) const {
   if (has_base(texel)) return false;
   samples.fill(splat(0));
   unsigned covered = 0;
@@ -137,48 +151,51 @@ bool FragmentBuffer::fill_disjoint(int texel, std::array<Float4, kSamples>& samp
   return true;
 }
 
-Float4 FragmentBuffer::resolve_opaque(int texel) const {
-  std::array<Float4, kSamples> samples;
+template <int kCount>
+Float4 FragmentBuffer<kCount>::resolve_opaque(int texel) const {
+  Colors samples;
   if (fill_disjoint(texel, samples)) return mean_of_samples(samples);
   static const Fragment nothing;
   const Fragment& base = base_[texel];
   const bool covered = has_base(texel);
-  std::array<SampleEntry, kSamples> nearest;
-  for (int s = 0; s < kSamples; ++s)
-    nearest[s] = covered ? SampleEntry{depth_at(base.depth, s), &base} : SampleEntry{-1, &nothing};
+  std::array<SampleEntry, kCount> nearest;
+  for (int s = 0; s < kCount; ++s)
+    nearest[s] = covered ? SampleEntry{depth_at(base.depth, Samples<kCount>::place(s)), &base}
+                         : SampleEntry{-1, &nothing};
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
     for (unsigned left = pool_[i].mask; left != 0; left &= left - 1) {
       const int s = __builtin_ctz(left);
-      const SampleEntry entry{depth_at(pool_[i].depth, s), &pool_[i]};
+      const SampleEntry entry{depth_at(pool_[i].depth, Samples<kCount>::place(s)), &pool_[i]};
       if (in_front(entry, nearest[s])) nearest[s] = entry;
     }
-  for (int s = 0; s < kSamples; ++s) samples[s] = nearest[s].surface->color;
+  for (int s = 0; s < kCount; ++s) samples[s] = nearest[s].surface->color;
   return mean_of_samples(samples);
 }
 
-Float4 FragmentBuffer::resolve_translucent(int texel) const {
-  std::array<Float4, kSamples> samples;
+template <int kCount>
+Float4 FragmentBuffer<kCount>::resolve_translucent(int texel) const {
+  Colors samples;
   // Sorted once by the depth at the centre: the order in each sample is nearly the same.
   surfaces_.clear();
   if (has_base(texel)) surfaces_.push_back({base_[texel].depth.z, &base_[texel]});
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
     surfaces_.push_back({pool_[i].depth.z, &pool_[i]});
   std::sort(surfaces_.begin(), surfaces_.end(), in_front);
-  for (int s = 0; s < kSamples; ++s) {
+  for (int s = 0; s < kCount; ++s) {
     entries_.clear();
     for (const SampleEntry& entry : surfaces_)
       if (entry.surface->mask >> s & 1)
-        insert_sorted(entries_, {depth_at(entry.surface->depth, s), entry.surface});
+        insert_sorted(entries_, {depth_at(entry.surface->depth, Samples<kCount>::place(s)), entry.surface});
     samples[s] = composite_sorted(entries_);
   }
   return mean_of_samples(samples);
 }
 
-Float4 mean_of_samples(const std::array<Float4, kSamples>& samples) {
-  std::array<Float4, kSamples> sum = samples;
-  for (int half = kSamples / 2; half >= 1; half /= 2)
-    for (int i = 0; i < half; ++i) sum[i] = sum[2 * i] + sum[2 * i + 1];
-  return sum[0] * splat(1.0f / kSamples);
-}
+template class FragmentBuffer<1>;
+template class FragmentBuffer<4>;
+template class FragmentBuffer<16>;
+template std::uint16_t nearer_samples<1>(const DepthPlane&, const DepthPlane&);
+template std::uint16_t nearer_samples<4>(const DepthPlane&, const DepthPlane&);
+template std::uint16_t nearer_samples<16>(const DepthPlane&, const DepthPlane&);
 
 }  // namespace talisman::chunker

@@ -39,6 +39,7 @@ struct MergeTolerance {
 };
 
 /// Samples where a is strictly nearer than b.
+template <int kCount>
 std::uint16_t nearer_samples(const DepthPlane& a, const DepthPlane& b);
 
 /// Front-to-back accumulation of one sample.
@@ -59,6 +60,8 @@ struct SampleEntry {
 
 enum class Added { Stored, Merged, BecameBase, Refused };
 
+/// Of texels with `kCount` samples: 1, 4 or 16.
+template <int kCount>
 class FragmentBuffer {
  public:
   FragmentBuffer();
@@ -69,21 +72,21 @@ class FragmentBuffer {
   /// True if the base hides all of `mask` of a surface that comes later.
   bool hides(int texel, std::uint16_t mask, const DepthPlane& depth) const {
     const Fragment& base = base_[texel];
-    return has_base(texel) && (nearer_samples(depth, base.depth) & mask) == 0;
+    return has_base(texel) && (nearer_samples<kCount>(depth, base.depth) & mask) == 0;
   }
 
   /// `fragment` comes after all that were added before. `kOpaque`: it is known to be opaque.
   template <bool kOpaque = false>
   Added add(int texel, const Fragment& fragment) {
     const bool opaque = kOpaque || fragment.opaque();
-    const bool whole = fragment.mask == kFullMask && opaque;
+    const bool whole = fragment.mask == kFull && opaque;
     if constexpr (!kOpaque) translucent_ = translucent_ || !opaque;
     if (!whole || !is_clear(texel)) return add_to_busy(texel, fragment, whole);
     set_base(texel, fragment);
     return Added::BecameBase;
   }
 
-  /// Premultiplied colour of a texel: in each sample front to back, then the mean of the 16.
+  /// Premultiplied colour of a texel: in each sample front to back, then the mean of them.
   Float4 resolve(int texel) const {
     if (first_[texel] >= 0) return resolve_busy(texel);
     return has_base(texel) ? base_[texel].color : splat(0);
@@ -93,6 +96,9 @@ class FragmentBuffer {
   int live_fragments() const { return live_; }
 
  private:
+  static constexpr std::uint16_t kFull = Samples<kCount>::kFull;
+  using Colors = std::array<Float4, kCount>;  ///< by sample
+
   bool has_base(int texel) const { return covered_[texel / kChunkSize] >> (texel % kChunkSize) & 1; }
   void set_base(int texel, const Fragment& fragment) {
     base_[texel] = fragment;
@@ -100,7 +106,7 @@ class FragmentBuffer {
   }
   Float4 resolve_busy(int texel) const;
   Added add_to_busy(int texel, const Fragment& fragment, bool whole);
-  bool fill_disjoint(int texel, std::array<Float4, kSamples>& samples) const;
+  bool fill_disjoint(int texel, Colors& samples) const;
   bool merge(Fragment& last, const Fragment& fragment) const;
   void drop_hidden(int texel);
   std::int32_t allocate();
@@ -119,7 +125,13 @@ class FragmentBuffer {
       entries_;  ///< of the texel that is being resolved; kept for their memory
 };
 
-/// Pairwise, so that sixteen equal samples give exactly their value.
-Float4 mean_of_samples(const std::array<Float4, kSamples>& samples);
+/// Pairwise, so that equal samples give exactly their value.
+template <std::size_t kCount>
+Float4 mean_of_samples(const std::array<Float4, kCount>& samples) {
+  std::array<Float4, kCount> sum = samples;
+  for (std::size_t half = kCount / 2; half >= 1; half /= 2)
+    for (std::size_t i = 0; i < half; ++i) sum[i] = sum[2 * i] + sum[2 * i + 1];
+  return sum[0] * splat(1.0f / kCount);
+}
 
 }  // namespace talisman::chunker

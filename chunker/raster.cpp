@@ -12,7 +12,8 @@ bool is_nothing(Float4 c) { return c[3] == 0 && c[0] == 0 && c[1] == 0 && c[2] =
 
 }  // namespace
 
-Chunk ChunkRenderer::draw(std::span<const std::uint32_t> triangles, layers::ivec2 origin) {
+template <int kCount>
+Chunk ChunkRenderer<kCount>::draw(std::span<const std::uint32_t> triangles, layers::ivec2 origin) {
   Chunk chunk{};
   origin_ = origin;
   counters_.polygon_chunks += static_cast<std::int64_t>(triangles.size());
@@ -22,7 +23,9 @@ Chunk ChunkRenderer::draw(std::span<const std::uint32_t> triangles, layers::ivec
   return chunk;
 }
 
-void ChunkRenderer::draw_box(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out) {
+template <int kCount>
+void ChunkRenderer<kCount>::draw_box(std::span<const std::uint32_t> triangles, const LatticeBox& box,
+                                     Chunk& out) {
   const bool single = box.x0 == box.x1 && box.y0 == box.y1;
   const int limit = single ? std::numeric_limits<int>::max() : options_.max_fragments_per_chunk;
   buffer_.clear(box, limit, {options_.merge_depth, options_.merge_color});
@@ -37,7 +40,8 @@ void ChunkRenderer::draw_box(std::span<const std::uint32_t> triangles, const Lat
   }
 }
 
-void ChunkRenderer::finish_row(std::span<Float4> row, int x0, int y, Chunk& out) const {
+template <int kCount>
+void ChunkRenderer<kCount>::finish_row(std::span<Float4> row, int x0, int y, Chunk& out) const {
   finish_term(list_.term, row);
   if (linear_ == nullptr) {
     encode_row(row.data(), static_cast<int>(row.size()), &out.texels[y * kChunkSize + x0]);
@@ -48,8 +52,9 @@ void ChunkRenderer::finish_row(std::span<Float4> row, int x0, int y, Chunk& out)
   for (const Float4& c : row) *to++ = {c[0], c[1], c[2], c[3]};
 }
 
-void ChunkRenderer::draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box,
-                                  Chunk& out) {
+template <int kCount>
+void ChunkRenderer<kCount>::draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box,
+                                          Chunk& out) {
   ++counters_.chunk_subdivisions;
   const int xm = (box.x0 + box.x1) / 2, ym = (box.y0 + box.y1) / 2;
   const LatticeBox quarters[4] = {{box.x0, box.y0, xm, ym},
@@ -60,13 +65,15 @@ void ChunkRenderer::draw_quarters(std::span<const std::uint32_t> triangles, cons
     if (!quarter.empty()) draw_box(triangles, quarter, out);
 }
 
-bool ChunkRenderer::draw_triangles(std::span<const std::uint32_t> triangles, const LatticeBox& box) {
+template <int kCount>
+bool ChunkRenderer<kCount>::draw_triangles(std::span<const std::uint32_t> triangles, const LatticeBox& box) {
   for (const std::uint32_t order : triangles)
     if (!draw_triangle(order, box)) return false;
   return true;
 }
 
-bool ChunkRenderer::draw_triangle(std::uint32_t order, const LatticeBox& box) {
+template <int kCount>
+bool ChunkRenderer<kCount>::draw_triangle(std::uint32_t order, const LatticeBox& box) {
   const Triangle& t = list_.triangles[order];
   LatticeBox texels = texels_of(sample_box(t));
   texels = intersection(
@@ -74,8 +81,7 @@ bool ChunkRenderer::draw_triangle(std::uint32_t order, const LatticeBox& box) {
   if (texels.empty()) return true;
   const EdgeSet edges = edges_of(t, origin_.x, origin_.y);
   if (!may_cover(edges, texels)) return true;
-  cover(edges, texels, coverage_);
-  if (options_.samples != kSamples) reduce_samples(texels, options_.samples, coverage_);
+  cover<kCount>(edges, texels, coverage_);
   const Gradients gradients = gradients_of(t);
   gather_visible(t, gradients, texels);
   if (batch_.count == 0) return true;
@@ -86,7 +92,8 @@ bool ChunkRenderer::draw_triangle(std::uint32_t order, const LatticeBox& box) {
   return shader.opaque ? store_fragments<true>(order) : store_fragments<false>(order);
 }
 
-void ChunkRenderer::count_shading(const Shader& shader) {
+template <int kCount>
+void ChunkRenderer<kCount>::count_shading(const Shader& shader) {
   counters_.pixels_shaded += batch_.count;
   counters_.texture_samples += batch_.texture_samples;
   if (shader.shadowed)
@@ -94,20 +101,21 @@ void ChunkRenderer::count_shading(const Shader& shader) {
   if (shader.reflection != nullptr) counters_.reflection_lookups += batch_.count;
 }
 
-void ChunkRenderer::gather_visible(const Triangle& t, const Gradients& gradients, const LatticeBox& box) {
+template <int kCount>
+void ChunkRenderer<kCount>::gather_visible(const Triangle& t, const Gradients& gradients,
+                                           const LatticeBox& box) {
   int count = 0;
-  const bool sloped = options_.samples != 1;
-  depth_dx_ = sloped ? static_cast<float>(gradients.depth_x) : 0;
-  depth_dy_ = sloped ? static_cast<float>(gradients.depth_y) : 0;
+  depth_dx_ = static_cast<float>(gradients.depth_x);
+  depth_dy_ = static_cast<float>(gradients.depth_y);
   for (int y = box.y0; y <= box.y1; ++y) {
     const float dy = from_corner(origin_.y + y, t.y[0]);
     for (std::uint32_t left = coverage_.touched[y]; left != 0; left &= left - 1) {
       const int x = __builtin_ctz(left), texel = y * kChunkSize + x;
       const bool full = coverage_.full[y] >> x & 1;
-      const std::uint16_t mask = full ? kFullMask : coverage_.mask[texel];
-      const DepthPlane depth = plane_of(t, gradients, origin_.x + x, origin_.y + y);
+      const std::uint16_t mask = full ? Samples<kCount>::kFull : coverage_.mask[texel];
+      const DepthPlane depth = depth_plane(t, gradients, origin_.x + x, origin_.y + y);
       if (buffer_.hides(texel, mask, depth)) continue;
-      const Centroid at = full ? Centroid{0.5f, 0.5f} : centroid_of(mask);
+      const Centroid at = full ? Centroid{0.5f, 0.5f} : centroid_of<kCount>(mask);
       texel_[count] = static_cast<std::uint16_t>(texel);
       mask_[count] = mask;
       depth_[count] = depth.z;
@@ -120,8 +128,9 @@ void ChunkRenderer::gather_visible(const Triangle& t, const Gradients& gradients
 }
 
 /// False if the fragments did not fit.
+template <int kCount>
 template <bool kOpaque>
-bool ChunkRenderer::store_fragments(std::uint32_t order) {
+bool ChunkRenderer<kCount>::store_fragments(std::uint32_t order) {
   Fragment fragment;
   fragment.order = order;
   fragment.depth.dx = depth_dx_;
@@ -137,13 +146,18 @@ bool ChunkRenderer::store_fragments(std::uint32_t order) {
   return true;
 }
 
+template <int kCount>
 template <bool kOpaque>
-bool ChunkRenderer::add(int texel, const Fragment& fragment) {
-  const Added added = buffer_.add<kOpaque>(texel, fragment);
+bool ChunkRenderer<kCount>::add(int texel, const Fragment& fragment) {
+  const Added added = buffer_.template add<kOpaque>(texel, fragment);
   counters_.pixels_filled += added != Added::Refused ? 1 : 0;
   counters_.fragments += added == Added::Stored ? 1 : 0;
   counters_.fragments_merged += added == Added::Merged ? 1 : 0;
   return added != Added::Refused;
 }
+
+template class ChunkRenderer<1>;
+template class ChunkRenderer<4>;
+template class ChunkRenderer<16>;
 
 }  // namespace talisman::chunker

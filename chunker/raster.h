@@ -15,6 +15,8 @@
 namespace talisman::chunker {
 
 /// Working memory of one thread, about 300 kB, used for one chunk after the other.
+/// `kCount`: samples per texel, 1, 4 or 16.
+template <int kCount>
 class ChunkRenderer {
  public:
   /// With `linear`, which is as large as the sprite, texels are left there and not encoded.
@@ -35,10 +37,6 @@ class ChunkRenderer {
   void count_shading(const Shader& shader);
   void draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out);
   bool draw_triangles(std::span<const std::uint32_t> triangles, const LatticeBox& box);
-  DepthPlane plane_of(const Triangle& t, const Gradients& gradients, int x, int y) const {
-    const DepthPlane plane = depth_plane(t, gradients, x, y);
-    return options_.samples == 1 ? flattened(plane, kOnlySample) : plane;
-  }
   bool draw_triangle(std::uint32_t order, const LatticeBox& box);
   void gather_visible(const Triangle& t, const Gradients& gradients, const LatticeBox& box);
   /// `kOpaque`: every colour of the batch has alpha 1, and nothing of it can be seen through.
@@ -51,7 +49,7 @@ class ChunkRenderer {
   const RenderOptions& options_;
   LinearImage* linear_ = nullptr;
   layers::ivec2 origin_{0, 0};
-  FragmentBuffer buffer_;
+  FragmentBuffer<kCount> buffer_;
   Coverage coverage_;
   ShadeBatch batch_;  ///< the visible texels of one triangle, and beside it
   std::array<std::uint16_t, ShadeBatch::kPoints> texel_;  ///< which they are,

@@ -3,6 +3,7 @@
 // one point. What the reference does on its own is everything between: which samples are covered, what is
 // seen in each, and how they add up.
 #include <algorithm>
+#include <numeric>
 
 #include "chunker/coverage.h"
 #include "chunker/draw_list.h"
@@ -26,22 +27,44 @@ bool inside_edge(const Triangle& t, int from, int to, std::int64_t x, std::int64
   return e > 0 || (e == 0 && (top || left));
 }
 
-std::uint16_t mask_of(const Triangle& t, int x, int y) {
-  unsigned mask = 0;
-  for (int s = 0; s < kSamples; ++s) {
-    const std::int64_t sx = static_cast<std::int64_t>(x) * 256 + 32 + 64 * (s % 4);
-    const std::int64_t sy = static_cast<std::int64_t>(y) * 256 + 32 + 64 * (s / 4);
-    if (inside_edge(t, 0, 1, sx, sy) && inside_edge(t, 1, 2, sx, sy) && inside_edge(t, 2, 0, sx, sy))
-      mask |= 1u << s;
-  }
-  return static_cast<std::uint16_t>(mask);
+/// The places of a texel at which it is looked at, of 4×4 (chunker/samples.h).
+std::vector<int> places_of(int samples) {
+  if (samples == 1) return {5};
+  if (samples == 4) return {1, 7, 8, 14};
+  std::vector<int> all(kPlaces);
+  std::iota(all.begin(), all.end(), 0);
+  return all;
 }
 
-Float4 color_of(const DrawList& list, const Triangle& t, std::uint16_t mask, int x, int y) {
+std::vector<bool> covered(const Triangle& t, const std::vector<int>& places, int x, int y) {
+  std::vector<bool> inside;
+  for (const int place : places) {
+    const std::int64_t sx = static_cast<std::int64_t>(x) * 256 + 32 + 64 * (place % 4);
+    const std::int64_t sy = static_cast<std::int64_t>(y) * 256 + 32 + 64 * (place / 4);
+    inside.push_back(inside_edge(t, 0, 1, sx, sy) && inside_edge(t, 1, 2, sx, sy) &&
+                     inside_edge(t, 2, 0, sx, sy));
+  }
+  return inside;
+}
+
+/// The mean place of what is covered, or the texel's centre where that is all.
+Centroid centre_of(const std::vector<bool>& inside, const std::vector<int>& places) {
+  int count = 0, x = 0, y = 0;
+  for (std::size_t s = 0; s < places.size(); ++s)
+    if (inside[s]) {
+      ++count;
+      x += 2 * (places[s] % 4) + 1;
+      y += 2 * (places[s] / 4) + 1;
+    }
+  if (count == static_cast<int>(places.size())) return {0.5f, 0.5f};
+  const float r = 0.125f / static_cast<float>(count);
+  return {static_cast<float>(x) * r, static_cast<float>(y) * r};
+}
+
+Float4 color_of(const DrawList& list, const Triangle& t, Centroid at, int x, int y) {
   const Batch& batch = list.batches[t.batch];
   const Interpolator interpolator =
       interpolator_of(t, gradients_of(t), batch.attributes.data(), batch.shader.layout.count);
-  const Centroid at = centroid_of(mask);
   const float dx = from_corner(x, t.x[0]) + at.x, dy = from_corner(y, t.y[0]) + at.y;
   return shade(batch.shader, interpolator, dx, dy);
 }
@@ -55,24 +78,34 @@ Float4 composite_front_to_back(std::vector<Surface>& surfaces) {
   return sum.color;
 }
 
-Texel texel_at(const DrawList& list, int samples_per_texel, int x, int y) {
-  std::array<std::vector<Surface>, kSamples> surfaces;
+/// What each sample sees.
+std::vector<Float4> samples_of(const DrawList& list, const std::vector<int>& places, int x, int y) {
+  std::vector<std::vector<Surface>> surfaces(places.size());
   for (std::uint32_t order = 0; order < list.triangles.size(); ++order) {
     const Triangle& t = list.triangles[order];
-    std::uint16_t mask = mask_of(t, x, y);
-    if (samples_per_texel != kSamples) mask = reduced_mask(mask, samples_per_texel);
-    if (mask == 0) continue;
-    DepthPlane plane = depth_plane(t, gradients_of(t), x, y);
-    if (samples_per_texel == 1) plane = flattened(plane, kOnlySample);
-    const Float4 color = color_of(list, t, mask, x, y);
-    for (int s = 0; s < kSamples; ++s)
-      if (mask >> s & 1) surfaces[s].push_back({depth_at(plane, s), order, color});
+    const std::vector<bool> inside = covered(t, places, x, y);
+    if (std::find(inside.begin(), inside.end(), true) == inside.end()) continue;
+    const DepthPlane plane = depth_plane(t, gradients_of(t), x, y);
+    const Float4 color = color_of(list, t, centre_of(inside, places), x, y);
+    for (std::size_t s = 0; s < places.size(); ++s)
+      if (inside[s]) surfaces[s].push_back({depth_at(plane, places[s]), order, color});
   }
-  std::array<Float4, kSamples> samples;
-  for (int s = 0; s < kSamples; ++s) samples[s] = composite_front_to_back(surfaces[s]);
-  Float4 mean = mean_of_samples(samples);
-  finish_term(list.term, {&mean, 1});
-  return encode({mean[0], mean[1], mean[2], mean[3]});
+  std::vector<Float4> samples;
+  for (std::vector<Surface>& of_sample : surfaces) samples.push_back(composite_front_to_back(of_sample));
+  return samples;
+}
+
+/// Neighbours first, then pairs of pairs: the order of the sum is part of the result.
+Float4 mean(std::span<const Float4> samples) {
+  if (samples.size() == 1) return samples[0];
+  const std::size_t half = samples.size() / 2;
+  return (mean(samples.first(half)) + mean(samples.last(half))) * splat(0.5f);
+}
+
+Texel texel_at(const DrawList& list, const std::vector<int>& places, int x, int y) {
+  Float4 color = mean(samples_of(list, places, x, y));
+  finish_term(list.term, {&color, 1});
+  return encode({color[0], color[1], color[2], color[3]});
 }
 
 }  // namespace
@@ -82,13 +115,14 @@ Sprite render(const PreparedScene& prepared, const layers::SceneFrame& frame, st
               const RenderOptions& options, const ShadeInputs& inputs) {
   DrawList list;
   build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
+  const std::vector<int> places = places_of(options.samples);
   Sprite sprite(list.size_px);
   for (int row = 0; row < sprite.chunks().y; ++row)
     for (int column = 0; column < sprite.chunks().x; ++column) {
       Chunk chunk{};
       for (int i = 0; i < kChunkSize * kChunkSize; ++i) {
         const int x = column * kChunkSize + i % kChunkSize, y = row * kChunkSize + i / kChunkSize;
-        if (x < list.size_px.x && y < list.size_px.y) chunk.texels[i] = texel_at(list, options.samples, x, y);
+        if (x < list.size_px.x && y < list.size_px.y) chunk.texels[i] = texel_at(list, places, x, y);
       }
       sprite.store(column, row, chunk);
     }

@@ -25,7 +25,6 @@ void check_options(const layers::SpritePlacement& placement, const RenderOptions
   TALISMAN_CHECK_LE(placement.size_px.y, kLargestSpritePx);
   TALISMAN_CHECK_GE(options.max_fragments_per_chunk, 16);
   TALISMAN_CHECK(options.merge_depth >= 0 && options.merge_color >= 0);
-  TALISMAN_CHECK(options.samples == 1 || options.samples == 4 || options.samples == 16);
   TALISMAN_CHECK(options.max_anisotropy >= 1 && options.max_anisotropy <= 16);
 }
 
@@ -62,25 +61,33 @@ std::map<int, bool> textures_of(const layers::Scene& scene, bool filtered) {
 }
 
 /// Draws every place; finished chunks go to `take(index of the place, chunk)`.
-template <typename Take>
+template <int kCount, typename Take>
 RenderCounters draw_chunks(const DrawList& list, const Work& work, const RenderOptions& options,
                            LinearImage* linear, const Take& take) {
   const std::vector<int>& places = work.places;
   const int columns = work.bins.chunks.x;
-  tbb::enumerable_thread_specific<ChunkRenderer> renderers(
-      [&] { return ChunkRenderer(list, options, linear); });
+  tbb::enumerable_thread_specific<ChunkRenderer<kCount>> renderers(
+      [&] { return ChunkRenderer<kCount>(list, options, linear); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
-    ChunkRenderer& renderer = renderers.local();
+    ChunkRenderer<kCount>& renderer = renderers.local();
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const layers::ivec2 origin(places[i] % columns * kChunkSize, places[i] / columns * kChunkSize);
       take(i, renderer.draw(work.bins.of(places[i]), origin));
     }
   });
   RenderCounters counters;
-  for (const ChunkRenderer& renderer : renderers) counters += renderer.counters();
+  for (const ChunkRenderer<kCount>& renderer : renderers) counters += renderer.counters();
   counters.polygons_in = list.polygons_in;
   counters.polygons_drawn = static_cast<std::int64_t>(list.triangles.size());
   return counters;
+}
+
+template <typename Take>
+RenderCounters draw_chunks(const DrawList& list, const Work& work, const RenderOptions& options,
+                           LinearImage* linear, const Take& take) {
+  return with_samples(options.samples, [&](auto count) {
+    return draw_chunks<decltype(count)::value>(list, work, options, linear, take);
+  });
 }
 
 }  // namespace

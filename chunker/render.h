@@ -7,7 +7,7 @@
 /// and the chunks are independent jobs. Inside a chunk: coverage by fixed-point edge functions with a
 /// top-left rule on a 4×4 sub-pixel grid (a shared edge is covered exactly once); opaque full cover goes
 /// straight to the pixel; partial cover and translucency become fragments with mask, premultiplied colour and
-/// a depth plane; resolve composites front to back in each of the 16 sub-pixels. A fragment merges with the
+/// a depth plane; resolve composites front to back in each of the sub-pixels. A fragment merges with the
 /// last one stored for its pixel when depth and colour are within tolerance; when fragment memory overflows
 /// the chunk is subdivided and its pieces are rendered independently, with the same result.
 ///
@@ -47,9 +47,9 @@ struct RenderOptions {
   /// Most trilinear samples along the line of anisotropy, 1 … 16; 1: isotropic. More keeps slanted textures
   /// sharp; every sample costs as much as the one before. Takes part only where `filter` is Trilinear.
   int max_anisotropy = 1;
-  /// Samples of coverage per texel: 1, 4 or 16. Fewer need fewer fragments and leave edges in that many
-  /// steps. With 1 a texel is what its sample at (3/8, 3/8) sees; with 4 each of four samples, one per row
-  /// and column, stands for its row.
+  /// Samples of coverage and depth per texel: 1, 4 or 16 (chunker/samples.h). Edges and crossing surfaces
+  /// have that many steps; more cost more masks, fragments and comparisons where there are edges, and nothing
+  /// inside of surfaces. With 1 opaque surfaces need no fragments at all.
   int samples = 16;
   /// ≥ 16; a chunk that needs more is drawn again in quarters. More memory (48 bytes each), fewer
   /// repetitions; the bytes do not change [A §1: size unpublished, assumed].

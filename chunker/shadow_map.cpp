@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
 #include "chunker/bin.h"
 #include "chunker/coverage.h"
+#include "chunker/shadow_view.h"
 #include "chunker/transform.h"
 #include "layers/check.h"
 
@@ -22,10 +22,9 @@ using layers::dvec4;
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
 constexpr double kWidestTan = 2.75;        // tan 70°: the most that one perspective map takes in
-constexpr double kNarrowestTan = 1e-4;     // so that a single point in the distance still has a map
 constexpr double kNearShare = 1e-5;        // near plane, of the distance to the farthest caster
 constexpr double kSteepestTexels = 16;     // the slope's bias stops growing here
-constexpr double kLookupSample = 3.0 / 8;  // place in a texel of the sample that decides, kOnlySample
+constexpr double kLookupSample = 3.0 / 8;  // place in a texel of the one sample that decides
 
 bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
@@ -63,75 +62,6 @@ void for_each_point(std::span<const Caster> casters, const Visit& visit) {
   for (const Caster& caster : casters)
     for (const dvec3& p : caster.world)
       if (finite(p)) visit(p);
-}
-
-/// Two directions across `forward` (unit length), right and down.
-struct Basis {
-  dvec3 right, down, forward;
-};
-
-Basis basis_along(const dvec3& forward) {
-  const dvec3 other = std::abs(forward.y) < 0.9 ? dvec3(0, 1, 0) : dvec3(1, 0, 0);
-  const dvec3 right = glm::normalize(glm::cross(forward, other));
-  return {right, glm::cross(forward, right), forward};
-}
-
-/// Texels per unit by which a map is made smaller, so that the filter finds casters beyond what must be seen.
-double share_of_map(const layers::ShadowMapOptions& options) {
-  const double border = 2.0 * (options.pcf_radius + 1), size = options.resolution_px;
-  return size > 2 * border ? (size - border) / size : 0.5;
-}
-
-/// How one face is drawn.
-struct FaceView {
-  SpriteView view;
-  double texel_m = 0;  ///< side of a texel; perspective: per unit of z
-  bool orthographic = false;
-};
-
-SpriteView view_of(const layers::ShadowMapOptions& options, double near_w) {
-  SpriteView view;
-  view.size_px = {options.resolution_px, options.resolution_px};
-  view.region.near_w = near_w;
-  view.region.center_px = {options.resolution_px * 0.5, options.resolution_px * 0.5};
-  return view;
-}
-
-FaceView perspective_view(const layers::ShadowMapOptions& options, const dvec3& eye, const Basis& basis,
-                          double tan_half, double near_w) {
-  const double size = options.resolution_px;
-  const double wide = std::max(tan_half, kNarrowestTan) / share_of_map(options);
-  FaceView face;
-  face.view = view_of(options, near_w);
-  const dvec3 x = basis.right * (size / (2 * wide)) + basis.forward * (size / 2);
-  const dvec3 y = basis.down * (size / (2 * wide)) + basis.forward * (size / 2);
-  face.view.sprite_from_world.row[0] = dvec4(x, -glm::dot(x, eye));
-  face.view.sprite_from_world.row[1] = dvec4(y, -glm::dot(y, eye));
-  face.view.sprite_from_world.row[2] = dvec4(basis.forward, -glm::dot(basis.forward, eye));
-  face.texel_m = 2 * wide / size;
-  return face;
-}
-
-/// Fitted to the casters; empty where they have no extent.
-std::optional<FaceView> orthographic_view(const layers::ShadowMapOptions& options, const Basis& basis,
-                                          std::span<const Caster> casters) {
-  dvec3 lo(HUGE_VAL), hi(-HUGE_VAL);
-  for_each_point(casters, [&](const dvec3& p) {
-    const dvec3 q(glm::dot(basis.right, p), glm::dot(basis.down, p), glm::dot(basis.forward, p));
-    lo = glm::min(lo, q);
-    hi = glm::max(hi, q);
-  });
-  const double side = std::max(hi.x - lo.x, hi.y - lo.y) / share_of_map(options);
-  if (!(side > 0 && std::isfinite(side))) return std::nullopt;
-  const double size = options.resolution_px, scale = size / side;
-  FaceView face;
-  face.orthographic = true;
-  face.view = view_of(options, 0.5);
-  face.view.sprite_from_world.row[0] = dvec4(basis.right * scale, size / 2 - (lo.x + hi.x) / 2 * scale);
-  face.view.sprite_from_world.row[1] = dvec4(basis.down * scale, size / 2 - (lo.y + hi.y) / 2 * scale);
-  face.view.sprite_from_world.row[2] = dvec4(basis.forward, -lo.z);
-  face.texel_m = side / size;
-  return face;
 }
 
 /// Depth that grows towards the light and is linear on the map: 1/w, or -z.
@@ -197,7 +127,7 @@ struct Nearest {
 };
 
 Nearest nearest_of(const FaceView& face, const DepthPlane& plane) {
-  const float depth = depth_at(plane, kOnlySample), slope = std::abs(plane.dx) + std::abs(plane.dy);
+  const float depth = depth_at(plane, Samples<1>::place(0)), slope = std::abs(plane.dx) + std::abs(plane.dy);
   if (face.orthographic) return {-depth, slope};
   if (!(depth > 0)) return {};
   return {1 / depth, slope / (depth * depth)};
@@ -216,8 +146,7 @@ class DepthChunk {
     texels = intersection(
         box_, {texels.x0 - origin_.x, texels.y0 - origin_.y, texels.x1 - origin_.x, texels.y1 - origin_.y});
     if (texels.empty()) return;
-    cover(edges_of(t, origin_.x, origin_.y), texels, coverage_);
-    reduce_samples(texels, 1, coverage_);
+    cover<1>(edges_of(t, origin_.x, origin_.y), texels, coverage_);
     const Gradients gradients = gradients_of(t);
     for (int y = texels.y0; y <= texels.y1; ++y)
       for (std::uint32_t left = coverage_.full[y]; left != 0; left &= left - 1) {
@@ -293,9 +222,7 @@ class ShadowMapBuilder {
         break;
       case layers::Light::Kind::Directional:
         map_.orthographic_ = true;
-        if (const auto face =
-                orthographic_view(options_, basis_along(glm::normalize(light_.direction)), casters_))
-          add(*face);
+        from_afar();
         break;
       case layers::Light::Kind::Point:
         from_place();
@@ -318,12 +245,22 @@ class ShadowMapBuilder {
     map_.faces_.push_back({face.view.sprite_from_world, draw_depths(face, triangles, options_)});
   }
 
+  void from_afar() {
+    const LightAxes axes = axes_along(glm::normalize(light_.direction));
+    dvec3 lo(HUGE_VAL), hi(-HUGE_VAL);
+    for_each_point(casters_, [&](const dvec3& p) {
+      lo = glm::min(lo, axes(p));
+      hi = glm::max(hi, axes(p));
+    });
+    if (const auto face = orthographic_view(options_, axes, lo, hi)) add(*face);
+  }
+
   void from_spot() {
     const double tan_outer = std::tan(light_.outer_cone_rad);
     if (!(light_.outer_cone_rad < 1.5 && tan_outer <= kWidestTan)) return from_place();
     if (reachable())
-      add(perspective_view(options_, light_.position, basis_along(glm::normalize(light_.direction)),
-                           tan_outer, near_w()));
+      add(perspective_view(options_, light_.position, axes_along(glm::normalize(light_.direction)), tan_outer,
+                           near_w()));
   }
 
   void from_place() {
@@ -331,25 +268,25 @@ class ShadowMapBuilder {
     const dvec3 towards = (lo_ + hi_) * 0.5 - light_.position;
     const double distance = glm::length(towards);
     if (distance > near_w()) {
-      const Basis basis = basis_along(towards / distance);
-      const double tan_half = widest_tan(basis);
+      const LightAxes axes = axes_along(towards / distance);
+      const double tan_half = widest_tan(axes);
       if (tan_half <= kWidestTan) {
-        add(perspective_view(options_, light_.position, basis, tan_half, near_w()));
+        add(perspective_view(options_, light_.position, axes, tan_half, near_w()));
         return;
       }
     }
     for (const dvec3& axis :
          {dvec3(1, 0, 0), dvec3(-1, 0, 0), dvec3(0, 1, 0), dvec3(0, -1, 0), dvec3(0, 0, 1), dvec3(0, 0, -1)})
-      add(perspective_view(options_, light_.position, basis_along(axis), 1, near_w()));
+      add(perspective_view(options_, light_.position, axes_along(axis), 1, near_w()));
   }
 
   /// Of the angle to the vertex that is farthest off the axis; infinite where one is not before the light.
-  double widest_tan(const Basis& basis) const {
+  double widest_tan(const LightAxes& axes) const {
     double widest = 0;
     for_each_point(casters_, [&](const dvec3& p) {
       const dvec3 q = p - light_.position;
-      const double z = glm::dot(basis.forward, q);
-      const double across = std::max(std::abs(glm::dot(basis.right, q)), std::abs(glm::dot(basis.down, q)));
+      const double z = glm::dot(axes.forward, q);
+      const double across = std::max(std::abs(glm::dot(axes.right, q)), std::abs(glm::dot(axes.down, q)));
       widest = std::max(widest, z > near_w() ? across / z : HUGE_VAL);
     });
     return widest;

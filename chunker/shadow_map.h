@@ -13,7 +13,8 @@
 /// n = 2r + 1: percentage-closer filter. v is 0 … 1 and what is outside the map, or before its near plane, is
 /// lit.
 ///
-/// Which maps. Directional: one, orthographic, fitted to the casters. Spot: one, perspective, as wide as its
+/// Which maps. Directional: one, orthographic, fitted to the casters on a grid that is fixed in the world
+/// (chunker/shadow_view.h). Spot: one, perspective, as wide as its
 /// outer cone; wider than 70° from its axis: as a point. Point: one towards the casters if they fit into 70°
 /// around their centre's direction, and six around the light if they do not, or if the light is among them.
 ///

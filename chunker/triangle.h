@@ -4,9 +4,9 @@
 /// A triangle on the sprite's fixed-point lattice, and the planes over it.
 ///
 /// Positions are snapped to 1/256 texel; from there on coverage is integer arithmetic. Depth is 1/w: linear
-/// on the screen, larger is nearer, and its float keeps the same relative precision at every distance. There
-/// are 4×4 samples per texel, sample s = 4j + i at
-/// ((2i + 1)/8, (2j + 1)/8). A plane of depth is stored at the texel's centre and evaluated at each sample as
+/// on the screen, larger is nearer, and its float keeps the same relative precision at every distance.
+/// Samples lie on 4×4 places per texel (chunker/samples.h), place s = 4j + i at ((2i + 1)/8, (2j + 1)/8). A
+/// plane of depth is stored at the texel's centre and evaluated at each sample's place as
 ///
 ///   depth(s) = (z + dx · (2i - 3)/8) + dy · (2j - 3)/8
 ///
@@ -17,14 +17,13 @@
 
 #include "chunker/float4.h"
 #include "chunker/interpolator.h"
+#include "chunker/samples.h"
 
 namespace talisman::chunker {
 
 inline constexpr int kSubpixel = 256;               ///< fixed-point units per texel
-inline constexpr int kSamples = 16;                 ///< per texel
-inline constexpr int kSampleStep = kSubpixel / 4;   ///< distance of samples
+inline constexpr int kSampleStep = kSubpixel / 4;   ///< distance of the lattice's places
 inline constexpr int kFirstSample = kSubpixel / 8;  ///< of a texel
-inline constexpr std::uint16_t kFullMask = 0xffff;
 
 /// Corners are ordered so that the doubled area is positive (clockwise on a display whose y points down).
 struct Triangle {
@@ -39,7 +38,7 @@ inline std::int64_t doubled_area(const Triangle& t) {
          static_cast<std::int64_t>(t.y[1] - t.y[0]) * (t.x[2] - t.x[0]);
 }
 
-/// Inclusive range of samples (or of texels), empty if first > last.
+/// Inclusive range of places (or of texels), empty if first > last.
 struct LatticeBox {
   int x0 = 0, y0 = 0, x1 = -1, y1 = -1;
   bool empty() const { return x0 > x1 || y0 > y1; }
@@ -50,7 +49,7 @@ inline LatticeBox intersection(const LatticeBox& a, const LatticeBox& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
-/// The samples inside the bounding box; shifts round towards -∞, as texels left of the sprite need.
+/// The places inside the bounding box; shifts round towards -∞, as texels left of the sprite need.
 inline LatticeBox sample_box(const Triangle& t) {
   const auto [xlo, xhi] = std::minmax({t.x[0], t.x[1], t.x[2]});
   const auto [ylo, yhi] = std::minmax({t.y[0], t.y[1], t.y[2]});
@@ -69,12 +68,9 @@ struct DepthPlane {
 
 inline float sample_offset(int i) { return static_cast<float>(2 * i - 3) * 0.125f; }
 
-inline float depth_at(const DepthPlane& plane, int sample) {
-  return (plane.z + plane.dx * sample_offset(sample & 3)) + plane.dy * sample_offset(sample >> 2);
+inline float depth_at(const DepthPlane& plane, int place) {
+  return (plane.z + plane.dx * sample_offset(place & 3)) + plane.dy * sample_offset(place >> 2);
 }
-
-/// The same depth at every sample: that of one of them.
-inline DepthPlane flattened(const DepthPlane& plane, int sample) { return {depth_at(plane, sample), 0, 0}; }
 
 /// Derivatives per texel of the barycentric coordinates of corners 1 and 2, and of depth.
 struct Gradients {
@@ -129,38 +125,6 @@ inline Interpolator interpolator_of(const Triangle& t, const Gradients& g, const
     p.d2[k] = corner[2][k] - corner[0][k];
   }
   return p;
-}
-
-/// Mean position of the samples of a mask, in texels from the texel's corner; (0.5, 0.5) for a full mask.
-/// Attributes are evaluated here, so that partly covered texels never take colours from outside the triangle.
-struct Centroid {
-  float x, y;
-};
-
-/// Samples sit at odd eighths, 1, 3, 5, 7. Per byte of a mask (two rows of samples): their number, and the
-/// sums of their x and y.
-struct ByteSums {
-  std::uint8_t count = 0, x = 0, y = 0;
-};
-
-inline constexpr std::array<ByteSums, 256> kByteSums = [] {
-  std::array<ByteSums, 256> table{};
-  for (int byte = 0; byte < 256; ++byte)
-    for (int s = 0; s < 8; ++s)
-      if (byte >> s & 1) {
-        ++table[byte].count;
-        table[byte].x = static_cast<std::uint8_t>(table[byte].x + 2 * (s & 3) + 1);
-        table[byte].y = static_cast<std::uint8_t>(table[byte].y + 2 * (s >> 2) + 1);
-      }
-  return table;
-}();
-
-inline Centroid centroid_of(std::uint16_t mask) {
-  const ByteSums &upper = kByteSums[mask & 0xff], &lower = kByteSums[mask >> 8];
-  const float r = 0.125f / static_cast<float>(upper.count + lower.count);
-  // The lower two rows lie four eighths further down.
-  return {static_cast<float>(upper.x + lower.x) * r,
-          static_cast<float>(upper.y + lower.y + 4 * lower.count) * r};
 }
 
 }  // namespace talisman::chunker

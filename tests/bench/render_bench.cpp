@@ -2,6 +2,7 @@
 // What does a rendered sprite cost? The workload of the peers' table: a displaced sphere at 1024², 5k / 70k /
 // 500k triangles. Mtri/s counts the triangles of the layer, Mpix/s the display pixels that the sphere covers.
 #include <numeric>
+#include <random>
 
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
@@ -84,6 +85,32 @@ void RenderSamples(benchmark::State& state) {
   render_scene(state, workload(70000), options, 1);
 }
 
+/// Nothing but edges: 200,000 small, slanted triangles in a cube that cross each other wherever they meet.
+layers::Scene thicket() {
+  layers::Scene scene = tests::displaced_sphere_scene(20);
+  layers::Mesh mesh;
+  std::mt19937 random(12);
+  std::uniform_real_distribution<float> place(-1, 1), side(-0.02f, 0.02f);
+  for (std::uint32_t i = 0; i < 200000; ++i) {
+    const layers::vec3 at(place(random), place(random), place(random));
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      mesh.positions.push_back(at + layers::vec3(side(random), side(random), side(random)));
+      mesh.normals.emplace_back(0, 0, 1);
+      mesh.indices.push_back(3 * i + k);
+    }
+  }
+  scene.meshes[scene.parts[0].mesh] = mesh;
+  for (layers::Material& material : scene.materials) material.two_sided = true;
+  return scene;
+}
+
+void RenderThicketSamples(benchmark::State& state) {
+  chunker::RenderOptions options;
+  options.shading = chunker::Shading::Gouraud;
+  options.samples = static_cast<int>(state.range(0));
+  render_scene(state, thicket(), options, 1);
+}
+
 /// What samples along the line of anisotropy cost.
 void RenderAnisotropic(benchmark::State& state) {
   chunker::RenderOptions options;
@@ -120,6 +147,7 @@ void DrawShadowMap(benchmark::State& state) {
 }
 
 BENCHMARK(RenderSamples)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(RenderThicketSamples)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(RenderAnisotropic)->Arg(1)->Arg(2)->Arg(8)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(RenderShadowed)->Arg(0)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(DrawShadowMap)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();

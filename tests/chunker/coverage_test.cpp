@@ -2,6 +2,7 @@
 #include "chunker/coverage.h"
 
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -38,9 +39,10 @@ bool covers_sample(const Triangle& t, std::int64_t x, std::int64_t y) {
   return true;
 }
 
+template <int kCount = 16>
 std::uint16_t mask_in(const Coverage& c, int x, int y) {
   if (!(c.touched[y] >> x & 1)) return 0;
-  return c.full[y] >> x & 1 ? kFullMask : c.mask[y * kChunkSize + x];
+  return c.full[y] >> x & 1 ? Samples<kCount>::kFull : c.mask[y * kChunkSize + x];
 }
 
 Triangle random_triangle(std::mt19937& random, std::int32_t reach) {
@@ -56,6 +58,25 @@ Triangle random_triangle(std::mt19937& random, std::int32_t reach) {
 
 // From slivers below one sample to triangles that span the whole guard band, where the 32-bit edges are at
 // their limit.
+template <int kCount>
+void compare_with_the_rule(const Triangle& t, const std::string& what) {
+  const EdgeSet edges = edges_of(t, 0, 0);
+  Coverage fast{}, slow{};
+  cover<kCount>(edges, kWholeChunk, fast);
+  cover_scalar<kCount>(edges, kWholeChunk, slow);
+  for (int y = 0; y < 32; ++y)
+    for (int x = 0; x < 32; ++x) {
+      std::uint16_t mask = 0;
+      for (int s = 0; s < kCount; ++s) {
+        const int place = Samples<kCount>::place(s);
+        if (covers_sample(t, x * 256 + 32 + 64 * (place & 3), y * 256 + 32 + 64 * (place >> 2)))
+          mask = static_cast<std::uint16_t>(mask | 1 << s);
+      }
+      ASSERT_EQ(mask_in<kCount>(slow, x, y), mask) << kCount << what;
+      ASSERT_EQ(mask_in<kCount>(fast, x, y), mask) << kCount << what;
+    }
+}
+
 TEST(Cover, AgreesWithTheRuleAndWithScalarAtEverySize) {
   const unsigned seed = 4711;
   std::mt19937 random(seed);
@@ -63,21 +84,34 @@ TEST(Cover, AgreesWithTheRuleAndWithScalarAtEverySize) {
     for (int n = 0; n < 150; ++n) {
       const Triangle t = random_triangle(random, reach);
       if (doubled_area(t) <= 0) continue;
-      const EdgeSet edges = edges_of(t, 0, 0);
-      Coverage fast{}, slow{};
-      cover(edges, kWholeChunk, fast);
-      cover_scalar(edges, kWholeChunk, slow);
-      for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 32; ++x) {
-          std::uint16_t mask = 0;
-          for (int s = 0; s < kSamples; ++s)
-            if (covers_sample(t, x * 256 + 32 + 64 * (s & 3), y * 256 + 32 + 64 * (s >> 2)))
-              mask = static_cast<std::uint16_t>(mask | 1 << s);
-          ASSERT_EQ(mask_in(slow, x, y), mask) << "seed " << seed << " reach " << reach << " n " << n;
-          ASSERT_EQ(mask_in(fast, x, y), mask) << "seed " << seed << " reach " << reach << " n " << n;
-        }
+      const std::string what = " samples, seed " + std::to_string(seed) + " reach " + std::to_string(reach) +
+                               " n " + std::to_string(n);
+      compare_with_the_rule<16>(t, what);
+      compare_with_the_rule<4>(t, what);
+      compare_with_the_rule<1>(t, what);
     }
   }
+}
+
+// Four samples, no two of them in a row or column; each centroid is their mean, and the full one the centre.
+TEST(CentroidOf, FourSamplesSpreadOverRowsAndColumns) {
+  unsigned rows = 0, columns = 0;
+  for (int s = 0; s < 4; ++s) {
+    rows |= 1u << (Samples<4>::place(s) >> 2);
+    columns |= 1u << (Samples<4>::place(s) & 3);
+  }
+  EXPECT_EQ(rows, 15u);
+  EXPECT_EQ(columns, 15u);
+  for (unsigned mask = 1; mask < 16; ++mask) {
+    unsigned sixteen = 0;
+    for (int s = 0; s < 4; ++s) sixteen |= (mask >> s & 1) << Samples<4>::place(s);
+    const Centroid four = centroid_of<4>(static_cast<std::uint16_t>(mask)),
+                   same = centroid_of<16>(static_cast<std::uint16_t>(sixteen));
+    EXPECT_EQ(four.x, same.x) << mask;
+    EXPECT_EQ(four.y, same.y) << mask;
+  }
+  EXPECT_EQ(centroid_of<4>(15).x, 0.5f);
+  EXPECT_EQ(centroid_of<4>(15).y, 0.5f);
 }
 
 // A box is a window on the coverage, whatever its place relative to the lanes.
@@ -88,10 +122,10 @@ TEST(Cover, AnyBoxShowsTheSameBits) {
     if (doubled_area(t) <= 0) continue;
     const EdgeSet edges = edges_of(t, 0, 0);
     Coverage whole{}, part{};
-    cover(edges, kWholeChunk, whole);
+    cover<16>(edges, kWholeChunk, whole);
     const int x0 = static_cast<int>(random() % 32), x1 = x0 + static_cast<int>(random() % (32 - x0));
     const int y0 = static_cast<int>(random() % 32), y1 = y0 + static_cast<int>(random() % (32 - y0));
-    cover(edges, {x0, y0, x1, y1}, part);
+    cover<16>(edges, {x0, y0, x1, y1}, part);
     for (int y = y0; y <= y1; ++y)
       for (int x = 0; x < 32; ++x)
         ASSERT_EQ(mask_in(part, x, y), x >= x0 && x <= x1 ? mask_in(whole, x, y) : 0) << n;
@@ -141,7 +175,7 @@ TEST(Cover, EverySampleOfATessellatedRegionIsCoveredExactlyOnce) {
       std::vector<int> hits(128 * 128, 0);
       for (const Triangle& t : random_tessellation(random, cells, side, lattice)) {
         Coverage c{};
-        cover(edges_of(t, 0, 0), kWholeChunk, c);
+        cover<16>(edges_of(t, 0, 0), kWholeChunk, c);
         for (int i = 0; i < 128 * 128; ++i) {
           const int x = i % 128, y = i / 128, s = (y % 4) * 4 + x % 4;
           hits[i] += mask_in(c, x / 4, y / 4) >> s & 1;
@@ -160,7 +194,7 @@ TEST(EdgesOf, ChunksShareOneRule) {
   for (int cy = 0; cy < 8; ++cy)
     for (int cx = 0; cx < 8; ++cx) {
       Coverage c{};
-      cover(edges_of(t, cx * 32, cy * 32), kWholeChunk, c);
+      cover<16>(edges_of(t, cx * 32, cy * 32), kWholeChunk, c);
       for (int i = 0; i < 1024; ++i) {
         const int x = cx * 32 + i % 32, y = cy * 32 + i / 32;
         ASSERT_EQ(mask_in(c, i % 32, i / 32) & 1, covers_sample(t, x * 256 + 32, y * 256 + 32) ? 1 : 0);
@@ -178,7 +212,7 @@ TEST(MayCover, NeverRejectsWhatIsCovered) {
     if (may_cover(edges, kWholeChunk)) continue;
     ++rejected;
     Coverage c{};
-    cover_scalar(edges, kWholeChunk, c);
+    cover_scalar<16>(edges, kWholeChunk, c);
     for (int y = 0; y < 32; ++y) ASSERT_EQ(c.touched[y], 0u);
   }
   EXPECT_GT(rejected, 100);
@@ -194,18 +228,19 @@ TEST(SampleBox, IsEmptyBetweenSamplesAndNotAtThem) {
 TEST(CentroidOf, IsTheMeanOfTheSamplesForEveryMask) {
   for (int mask = 1; mask < 65536; ++mask) {
     double x = 0, y = 0, n = 0;
-    for (int s = 0; s < kSamples; ++s)
+    for (int s = 0; s < 16; ++s)
       if (mask >> s & 1) {
         x += (2 * (s % 4) + 1) / 8.0;
         y += (2 * (s / 4) + 1) / 8.0;
         ++n;
       }
-    const Centroid c = centroid_of(static_cast<std::uint16_t>(mask));
+    const Centroid c = centroid_of<16>(static_cast<std::uint16_t>(mask));
     ASSERT_NEAR(c.x, x / n, 1e-6) << mask;
     ASSERT_NEAR(c.y, y / n, 1e-6) << mask;
   }
-  EXPECT_EQ(centroid_of(kFullMask).x, 0.5f);  // full texels skip the sum: both must be the same point
-  EXPECT_EQ(centroid_of(kFullMask).y, 0.5f);
+  EXPECT_EQ(centroid_of<16>(Samples<16>::kFull).x,
+            0.5f);  // full texels skip the sum: both must be the same point
+  EXPECT_EQ(centroid_of<16>(Samples<16>::kFull).y, 0.5f);
 }
 
 TEST(DepthPlaneOf, PassesThroughTheCorners) {
@@ -236,7 +271,7 @@ TEST(BinTriangles, HoldsEveryCoveredPairInOrder) {
     EXPECT_TRUE(std::is_sorted(bin.begin(), bin.end()));
     for (std::uint32_t i = 0; i < triangles.size(); ++i) {
       Coverage c{};
-      cover(edges_of(triangles[i], chunk % 5 * 32, chunk / 5 * 32), kWholeChunk, c);
+      cover<16>(edges_of(triangles[i], chunk % 5 * 32, chunk / 5 * 32), kWholeChunk, c);
       std::uint32_t any = 0;
       for (int y = 0; y < std::min(32, size.y - chunk / 5 * 32); ++y) any |= c.touched[y];
       if (chunk % 5 == 4) any &= (1u << (150 - 128)) - 1;

@@ -11,8 +11,9 @@ namespace {
 
 constexpr LatticeBox kWholeChunk{0, 0, 31, 31};
 constexpr int kTexel = 77;
+constexpr std::uint16_t kFull = Samples<16>::kFull;
 
-Fragment fragment(Float4 color, DepthPlane depth, std::uint32_t order, std::uint16_t mask = kFullMask) {
+Fragment fragment(Float4 color, DepthPlane depth, std::uint32_t order, std::uint16_t mask = kFull) {
   Fragment f;
   f.color = color;
   f.depth = depth;
@@ -23,8 +24,8 @@ Fragment fragment(Float4 color, DepthPlane depth, std::uint32_t order, std::uint
 
 const Float4 kRed{1, 0, 0, 1}, kGreen{0, 1, 0, 1}, kBlue{0, 0, 1, 1}, kGlass{0.25f, 0.25f, 0.25f, 0.5f};
 
-std::unique_ptr<FragmentBuffer> buffer(MergeTolerance merge = {}, int limit = 4096) {
-  auto b = std::make_unique<FragmentBuffer>();
+std::unique_ptr<FragmentBuffer<16>> buffer(MergeTolerance merge = {}, int limit = 4096) {
+  auto b = std::make_unique<FragmentBuffer<16>>();
   b->clear(kWholeChunk, limit, merge);
   return b;
 }
@@ -33,9 +34,10 @@ void expect_color(Float4 actual, Float4 expected) {
   for (int c = 0; c < 4; ++c) EXPECT_FLOAT_EQ(actual[c], expected[c]) << "channel " << c;
 }
 
-// The bounds may decide only what the sixteen comparisons would decide; near-equal planes are where they
+// The bounds may decide only what comparisons one by one would decide; near-equal planes are where they
 // could be wrong.
-TEST(NearerSamples, AgreesWithSixteenComparisons) {
+template <int kCount>
+void compare_nearer_samples() {
   const unsigned seed = 8128;
   std::mt19937 random(seed);
   std::normal_distribution<float> wide(0, 1);
@@ -45,18 +47,29 @@ TEST(NearerSamples, AgreesWithSixteenComparisons) {
     const DepthPlane a{1 + wide(random), wide(random) * scale, wide(random) * scale};
     const DepthPlane b{a.z + wide(random) * scale, wide(random) * scale, a.dy};
     unsigned expected = 0;
-    for (int s = 0; s < kSamples; ++s) expected |= (depth_at(a, s) > depth_at(b, s) ? 1u : 0u) << s;
-    ASSERT_EQ(nearer_samples(a, b), expected) << "seed " << seed << " n " << n;
-    mixed += expected != 0 && expected != kFullMask ? 1 : 0;
+    for (int s = 0; s < kCount; ++s) {
+      const int place = Samples<kCount>::place(s);
+      expected |= (depth_at(a, place) > depth_at(b, place) ? 1u : 0u) << s;
+    }
+    ASSERT_EQ(nearer_samples<kCount>(a, b), expected) << "seed " << seed << " n " << n;
+    mixed += expected != 0 && expected != Samples<kCount>::kFull ? 1 : 0;
   }
-  EXPECT_GT(mixed, 10000);
+  EXPECT_TRUE(kCount == 1 ? mixed == 0 : mixed > 10000);
+}
+
+TEST(NearerSamples, AgreesWithComparisonsOneByOne) {
+  compare_nearer_samples<16>();
+  compare_nearer_samples<4>();
+  compare_nearer_samples<1>();
 }
 
 TEST(MeanOfSamples, OfEqualSamplesIsTheirValue) {
   for (const float v : {0.1f, 1.0f / 3, 0.7f, 12345.678f}) {
-    std::array<Float4, kSamples> samples;
-    samples.fill(splat(v));
-    EXPECT_EQ(mean_of_samples(samples)[2], v);
+    std::array<Float4, 16> sixteen;
+    sixteen.fill(splat(v));
+    EXPECT_EQ(mean_of_samples(sixteen)[2], v);
+    EXPECT_EQ(mean_of_samples(std::array{splat(v), splat(v), splat(v), splat(v)})[2], v);
+    EXPECT_EQ(mean_of_samples(std::array{splat(v)})[2], v);
   }
 }
 
@@ -79,7 +92,7 @@ TEST(FragmentBuffer, OpaqueFullCoverIsTheBaseAndHidesWhatIsBehind) {
 TEST(FragmentBuffer, AtEqualDepthTheEarlierSurfaceIsSeen) {
   auto b = buffer();
   b->add(kTexel, fragment(kRed, {2, 0.5f, 0}, 0));
-  EXPECT_TRUE(b->hides(kTexel, kFullMask, {2, 0.5f, 0}));
+  EXPECT_TRUE(b->hides(kTexel, kFull, {2, 0.5f, 0}));
   auto partial_first = buffer();
   partial_first->add(kTexel, fragment(kGreen, {2, 0, 0}, 0, 0x0fff));
   partial_first->add(kTexel, fragment(kRed, {2, 0, 0}, 1));
@@ -178,29 +191,33 @@ TEST(FragmentBuffer, RefusesBeyondItsLimitButStillTakesBases) {
 }
 
 // Random surfaces against a per-sample list that knows nothing of bases, dropping or sorting once.
-TEST(FragmentBuffer, ResolvesAsSixteenSortedListsWould) {
+template <int kCount>
+void compare_with_sorted_lists() {
+  constexpr std::uint16_t kAll = Samples<kCount>::kFull;
   const unsigned seed = 60;
   std::mt19937 random(seed);
   std::uniform_real_distribution<float> unit(0, 1);
   for (int n = 0; n < 3000; ++n) {
-    auto b = buffer();
-    std::array<std::vector<Fragment>, kSamples> lists;
+    const auto b = std::make_unique<FragmentBuffer<kCount>>();
+    b->clear(kWholeChunk, 4096, {});
+    std::array<std::vector<Fragment>, kCount> lists;
     const int count = 1 + static_cast<int>(random() % 12);
     for (int i = 0; i < count; ++i) {
       const float alpha = random() % 2 ? 1 : unit(random);
       Fragment f = fragment(Float4{unit(random), unit(random), unit(random), 1} * splat(alpha),
                             {static_cast<float>(random() % 4) + 1, unit(random) - 0.5f, unit(random) - 0.5f},
                             static_cast<std::uint32_t>(i),
-                            random() % 2 ? kFullMask : static_cast<std::uint16_t>(random() | 1));
+                            random() % 2 ? kAll : static_cast<std::uint16_t>((random() & kAll) | 1));
       if (random() % 3 == 0) f.depth.dx = f.depth.dy = 0;  // ties
-      for (int s = 0; s < kSamples; ++s)
+      for (int s = 0; s < kCount; ++s)
         if (f.mask >> s & 1) lists[s].push_back(f);
       if (!b->hides(kTexel, f.mask, f.depth)) b->add(kTexel, f);
     }
-    std::array<Float4, kSamples> samples;
-    for (int s = 0; s < kSamples; ++s) {
+    std::array<Float4, kCount> samples;
+    for (int s = 0; s < kCount; ++s) {
+      const int place = Samples<kCount>::place(s);
       std::stable_sort(lists[s].begin(), lists[s].end(), [&](const Fragment& p, const Fragment& q) {
-        return depth_at(p.depth, s) > depth_at(q.depth, s);
+        return depth_at(p.depth, place) > depth_at(q.depth, place);
       });
       SampleSum sum;
       for (const Fragment& f : lists[s]) sum.add_behind(f.color);
@@ -208,8 +225,14 @@ TEST(FragmentBuffer, ResolvesAsSixteenSortedListsWould) {
     }
     const Float4 expected = mean_of_samples(samples), actual = b->resolve(kTexel);
     for (int c = 0; c < 4; ++c)
-      ASSERT_EQ(actual[c], expected[c]) << "seed " << seed << " n " << n << " channel " << c;
+      ASSERT_EQ(actual[c], expected[c]) << kCount << " samples, seed " << seed << " n " << n;
   }
+}
+
+TEST(FragmentBuffer, ResolvesAsSortedListsWould) {
+  compare_with_sorted_lists<16>();
+  compare_with_sorted_lists<4>();
+  compare_with_sorted_lists<1>();
 }
 
 }  // namespace

@@ -86,6 +86,11 @@ inline Difference difference(const Sprite& a, const Sprite& b) {
   return d;
 }
 
+inline void expect_same(const Sprite& a, const Sprite& b, const std::string& what) {
+  const Difference d = difference(a, b);
+  EXPECT_EQ(d.texels, 0) << what << ": largest " << d.largest << " at " << d.where.x << " " << d.where.y;
+}
+
 inline int covered_texels(const Sprite& sprite) {
   int count = 0;
   for (int y = 0; y < sprite.size_px().y; ++y)

@@ -32,11 +32,6 @@ layers::SpritePlacement rotated_placement(ivec2 size, double angle, double scale
   return placement;
 }
 
-void expect_same(const Sprite& a, const Sprite& b, const std::string& what) {
-  const Difference d = difference(a, b);
-  EXPECT_EQ(d.texels, 0) << what << ": largest " << d.largest << " at " << d.where.x << " " << d.where.y;
-}
-
 /// Triangles of every size, slope, opacity and order, many of them through each other.
 FlatScene random_soup(unsigned seed, ivec2 size, int count, bool translucent) {
   std::mt19937 random(seed);
@@ -91,20 +86,28 @@ TEST(Render, EqualsTheReferenceAroundTheSizeOfAChunk) {
 TEST(Render, EqualsTheReferenceOnRandomSoups) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const FlatScene soup = random_soup(seed, {48, 40}, 120, seed % 2 == 0);
-    expect_same(soup.render(exact_options()).sprite, soup.reference(exact_options()),
-                "seed " + std::to_string(seed));
+    RenderOptions options = exact_options();
+    for (const int samples : {16, 4, 1}) {
+      options.samples = samples;
+      expect_same(soup.render(options).sprite, soup.reference(options),
+                  "seed " + std::to_string(seed) + ", samples " + std::to_string(samples));
+    }
   }
 }
 
 // The merge rule may change a texel, by what its tolerances say: one code value.
 TEST(Render, MergingCostsAtMostOneCodeValue) {
   const layers::Scene scene = content::displaced_sphere_scene(20000);
-  const RenderResult exact = render_all(scene, {96, 96}, exact_options()),
-                     merged = render_all(scene, {96, 96});
-  EXPECT_GT(merged.counters.fragments_merged, 100);
-  EXPECT_EQ(exact.counters.fragments_merged, 0);
-  EXPECT_LE(difference(exact.sprite, merged.sprite).largest, 1);
-  dump_picture("ball", merged.sprite);
+  for (const int samples : {16, 4}) {
+    RenderOptions exactly = exact_options(), merging;
+    exactly.samples = merging.samples = samples;
+    const RenderResult exact = render_all(scene, {96, 96}, exactly),
+                       merged = render_all(scene, {96, 96}, merging);
+    EXPECT_GT(merged.counters.fragments_merged, 100);
+    EXPECT_EQ(exact.counters.fragments_merged, 0);
+    EXPECT_LE(difference(exact.sprite, merged.sprite).largest, 1) << samples;
+    dump_picture("ball", merged.sprite);
+  }
 }
 
 // --- The same bytes always
@@ -128,15 +131,20 @@ TEST(Render, EveryInstructionSetGivesTheSameBytes) {
   }
   scene.materials.back().opacity = 0.5f;
   const ivec2 size(320, 240);
-  const RenderResult expected = render_all(scene, size);
-  dump_picture("moving", expected.sprite);
-  int sets = 0;
-  for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1, ++sets) {
-    hwy::GetChosenTarget().Update(targets & -targets);
-    expect_same(render_all(scene, size).sprite, expected.sprite, hwy::TargetName(targets & -targets));
+  for (const int samples : {1, 4, 16}) {
+    RenderOptions options;
+    options.samples = samples;
+    const RenderResult expected = render_all(scene, size, options);
+    dump_picture("moving", expected.sprite);
+    int sets = 0;
+    for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1, ++sets) {
+      hwy::GetChosenTarget().Update(targets & -targets);
+      expect_same(render_all(scene, size, options).sprite, expected.sprite,
+                  hwy::TargetName(targets & -targets));
+    }
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    EXPECT_GE(sets, 1);
   }
-  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(sets, 1);
 }
 
 // Overflow redraws the chunk in quarters, and those again: the buffer's size must not show.
@@ -146,11 +154,14 @@ TEST(Render, FragmentOverflowSubdividesToTheSameBytes) {
   small.max_fragments_per_chunk = 16;
   RenderOptions large;
   large.max_fragments_per_chunk = 1 << 20;
-  const RenderResult few = soup.render(small), many = soup.render(large);
-  dump_picture("soup", few.sprite);
-  EXPECT_GT(few.counters.chunk_subdivisions, 4);
-  EXPECT_EQ(many.counters.chunk_subdivisions, 0);
-  expect_same(few.sprite, many.sprite, "16 fragments against 2^20");
+  for (const int samples : {16, 4, 1}) {
+    small.samples = large.samples = samples;
+    const RenderResult few = soup.render(small), many = soup.render(large);
+    dump_picture("soup", few.sprite);
+    EXPECT_GT(few.counters.chunk_subdivisions, 4);
+    EXPECT_EQ(many.counters.chunk_subdivisions, 0);
+    expect_same(few.sprite, many.sprite, "16 fragments against 2^20");
+  }
 }
 
 // More layers on each pixel than any buffer holds: pixels are drawn one by one, and the sum is still the

@@ -10,11 +10,6 @@
 namespace talisman::chunker::tests {
 namespace {
 
-void expect_same(const Sprite& a, const Sprite& b, const std::string& what) {
-  const Difference d = difference(a, b);
-  EXPECT_EQ(d.texels, 0) << what << ": largest " << d.largest << " at " << d.where.x << " " << d.where.y;
-}
-
 float largest_color(const LinearImage& image) {
   float largest = 0;
   for (const LinearColor& c : image.texels) largest = std::max({largest, c.r, c.g, c.b});
