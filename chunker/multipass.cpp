@@ -58,7 +58,7 @@ LinearImage render_multipass(const PreparedScene& prepared, const layers::SceneF
   const layers::Scene& scene = prepared.scene();
   if (any_material(scene, parts, [](const auto& m) { return m.specular != layers::vec3(0); }))
     add(pass(ShadeTerm::Specular, -1), image);
-  if (inputs.reflection != nullptr &&
+  if (!inputs.reflections.empty() &&
       any_material(scene, parts, [](const auto& m) { return m.reflectivity > 0; }))
     add(pass(ShadeTerm::Reflection, -1), image);
   image.counters = counters;
