@@ -44,11 +44,11 @@ void complete_knob(KnobResults& results, std::size_t first) {
     const Measured& measured = results.measured[rung.variant];
     if (k > first) {
       const RungResult& coarser = results.rungs[k - 1];
-      rung.gain = gain_of(results.measured[coarser.variant], coarser.error, measured, rung.error);
+      rung.gain = gain_of(results.measured[coarser.variant], coarser.alone, measured, rung.alone);
     }
     work.push_back(rung.work);
-    wall.push_back(measured.drawn.median_ms);
-    flip.push_back(rung.error.quality.flip);
+    wall.push_back(measured.cpu.median_ms);
+    flip.push_back(rung.alone.quality.flip);
   }
   const std::vector<bool> work_front = pareto_front(work, flip), wall_front = pareto_front(wall, flip);
   for (std::size_t k = first; k < results.rungs.size(); ++k) {
@@ -103,9 +103,9 @@ struct Removal {
 
 Gain gain_of(const Measured& coarser, const PictureError& coarser_error, const Measured& finer,
              const PictureError& finer_error) {
-  const double ms = finer.drawn.median_ms - coarser.drawn.median_ms;
+  const double ms = finer.cpu.median_ms - coarser.cpu.median_ms;
   Gain gain;
-  if (!(std::fabs(ms) > finer.drawn.spread_ms + coarser.drawn.spread_ms)) return gain;
+  if (!(std::fabs(ms) > finer.cpu.spread_ms + coarser.cpu.spread_ms)) return gain;
   const double db = finer_error.quality.psnr_db - coarser_error.quality.psnr_db;
   if (std::isfinite(db)) gain.db_per_ms = db / ms;
   gain.flip_per_ms = (coarser_error.quality.flip - finer_error.quality.flip) / ms;
@@ -150,6 +150,9 @@ KnobResults measure_knobs(const Variant& given, const std::vector<int>& frames, 
       RungResult rung;
       rung.knob = k, rung.rung = r, rung.variant = variant;
       rung.error = error_of(results.measured[variant].pictures, truth);
+      rung.alone = knob.in_sprites
+                       ? error_of(results.measured[variant].pictures, results.measured[knob.base()].pictures)
+                       : rung.error;
       rung.work = work_of(knob.work, results.ladder.variants[variant], results.measured[variant]);
       results.rungs.push_back(rung);
     }
@@ -192,10 +195,12 @@ EffectResults measure_effects(const Variant& given, const std::vector<int>& fram
   results.runs = measure_variants(pointers(over_time.variants), results.run_load, progress);
   for (EffectResult& effect : pictures.effects)
     effect.error = error_of(results.frames[effect.without].pictures, results.frames[0].pictures);
-  const std::vector<Image8> truth = direct_pictures(given, results.run_load.compared);
-  results.run_error = error_of(results.runs[0].pictures, truth);
-  for (EffectResult& effect : over_time.effects)
-    effect.error = error_of(results.runs[effect.without].pictures, truth);
+  const auto run_error = [&](std::size_t k) {
+    return error_of(results.runs[k].pictures,
+                    direct_pictures(over_time.variants[k], results.run_load.compared));
+  };
+  results.run_error = run_error(0);
+  for (EffectResult& effect : over_time.effects) effect.error = run_error(effect.without);
   results.pictures = std::move(pictures.effects);
   results.over_time = std::move(over_time.effects);
   return results;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <map>
 #include <memory>
 #include <optional>
@@ -26,14 +27,16 @@ WallTime wall_time(const std::vector<double>& ms) {
 
 /// The stages of one variant, one number per round: mean ms of a frame.
 struct RoundTimes {
-  std::vector<double> plan, render, composite;
+  std::vector<double> plan, render, composite, drawn, cpu;
   void begin() {
-    for (auto* stage : {&plan, &render, &composite}) stage->push_back(0);
+    for (auto* stage : {&plan, &render, &composite, &drawn, &cpu}) stage->push_back(0);
   }
-  void add(const StageTimes& times, std::size_t frames) {
+  void add(const StageTimes& times, double cpu_ms, std::size_t frames) {
     plan.back() += times.plan_ms / double(frames);
     render.back() += times.render_ms / double(frames);
     composite.back() += times.composite_ms / double(frames);
+    drawn.back() += (times.render_ms + times.composite_ms) / double(frames);
+    cpu.back() += cpu_ms / double(frames);
   }
 };
 
@@ -49,8 +52,10 @@ class VariantRun {
   void draw(int frame) {
     if (frame == workload_.frames.front()) times_.begin();
     if (frame == workload_.frames.front() || !workload_.is_run) state_.emplace(pipeline_);
+    const std::clock_t begin = std::clock();
     const FrameReport report = step(pipeline_, *state_, frame, &prepared_);
-    times_.add(report.times, workload_.frames.size());
+    const double cpu_ms = 1000.0 * double(std::clock() - begin) / CLOCKS_PER_SEC;
+    times_.add(report.times, cpu_ms, workload_.frames.size());
     if (times_.plan.size() == 1) count(report);
   }
 
@@ -60,9 +65,8 @@ class VariantRun {
     measured_.plan = wall_time(times_.plan);
     measured_.render = wall_time(times_.render);
     measured_.composite = wall_time(times_.composite);
-    std::vector<double> drawn = times_.render;
-    for (std::size_t round = 0; round < drawn.size(); ++round) drawn[round] += times_.composite[round];
-    measured_.drawn = wall_time(drawn);
+    measured_.drawn = wall_time(times_.drawn);
+    measured_.cpu = wall_time(times_.cpu);
     return std::move(measured_);
   }
 

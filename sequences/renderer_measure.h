@@ -34,6 +34,7 @@ struct WallTime {
 struct Measured {
   int frames = 0;
   WallTime plan, render, composite, drawn;  ///< per frame; drawn: render and composite
+  WallTime cpu;                             ///< of the processor, all threads: less at the mercy of others
   double modelled_ms = 0;                   ///< per frame, by the profile talisman-1996
   // Added up over the frames.
   std::int64_t renders = 0, polygons = 0,

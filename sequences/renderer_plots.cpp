@@ -19,7 +19,7 @@ Plot knob_plot(const RendererReport& report, bool in_sprites, Plot plot, X x) {
       if (rung.knob == k) last = &rung;
     for (const RungResult& rung : results.rungs) {
       if (rung.knob != k) continue;
-      series.points.push_back({x(rung, *last), rung.error.quality.flip});
+      series.points.push_back({x(rung, *last), rung.alone.quality.flip});
       series.labels.push_back(knob.rungs[rung.rung].label);
     }
     plot.series.push_back(series);
@@ -27,7 +27,10 @@ Plot knob_plot(const RendererReport& report, bool in_sprites, Plot plot, X x) {
   return plot;
 }
 
-const PlotAxis kFlipAxis{"FLIP against the truth: less is better", "", true};
+PlotAxis flip_axis(bool in_sprites) {
+  return {in_sprites ? "FLIP of the knob alone: less is better" : "FLIP against the truth: less is better",
+          "", true};
+}
 
 const char* means(bool in_sprites) { return in_sprites ? "knobs of sprites" : "knobs of the one pass"; }
 
@@ -35,18 +38,18 @@ const char* means(bool in_sprites) { return in_sprites ? "knobs of sprites" : "k
 
 Plot knob_time_plot(const RendererReport& report, bool in_sprites) {
   const Plot plot{std::string(means(in_sprites)) + ": picture error against time (" + report.sequence + ")",
-                  {"measured time per frame: render, composite", "ms", false},
-                  kFlipAxis,
+                  {"measured processor time per frame", "ms", false},
+                  flip_axis(in_sprites),
                   {}};
   return knob_plot(report, in_sprites, plot, [&](const RungResult& rung, const RungResult&) {
-    return report.knobs.measured[rung.variant].drawn.median_ms;
+    return report.knobs.measured[rung.variant].cpu.median_ms;
   });
 }
 
 Plot knob_work_plot(const RendererReport& report, bool in_sprites) {
   const Plot plot{std::string(means(in_sprites)) + ": picture error against work (" + report.sequence + ")",
                   {"the count that the knob is paid in, of its last rung", "%", true},
-                  kFlipAxis,
+                  flip_axis(in_sprites),
                   {}};
   return knob_plot(report, in_sprites, plot, [](const RungResult& rung, const RungResult& last) {
     return last.work > 0 ? 100 * rung.work / last.work : NAN;
@@ -55,12 +58,12 @@ Plot knob_work_plot(const RendererReport& report, bool in_sprites) {
 
 Plot effect_plot(const RendererReport& report) {
   Plot plot{"effects of a frame: what each one costs and buys (" + report.sequence + ")",
-            {"cost: measured time with - without, per frame", "ms", false},
+            {"cost: measured processor time with - without, per frame", "ms", false},
             {"gain: FLIP of the picture without it", "", true},
             {}};
   const EffectResults& effects = report.effects;
   for (const EffectResult& effect : effects.pictures) {
-    const double ms = effects.frames[0].drawn.median_ms - effects.frames[effect.without].drawn.median_ms;
+    const double ms = effects.frames[0].cpu.median_ms - effects.frames[effect.without].cpu.median_ms;
     const std::string name(layers::name(effect.call.effect));
     plot.series.push_back({name, {{ms, effect.error.quality.flip}}, SeriesStyle::Points, {name}});
   }
@@ -69,13 +72,12 @@ Plot effect_plot(const RendererReport& report) {
 
 Plot run_plot(const RendererReport& report) {
   Plot plot{"effects over time: time against error, without each (" + report.sequence + ")",
-            {"measured time per frame: plan, render, composite", "ms", false},
-            {"FLIP against direct: less is better", "", false},
+            {"measured processor time per frame", "ms", false},
+            {"FLIP against direct: less is better", "", true},
             {}};
   const EffectResults& effects = report.effects;
   const auto add = [&](const std::string& name, const Measured& m, const PictureError& error) {
-    plot.series.push_back(
-        {name, {{m.plan.median_ms + m.drawn.median_ms, error.quality.flip}}, SeriesStyle::Points, {name}});
+    plot.series.push_back({name, {{m.cpu.median_ms, error.quality.flip}}, SeriesStyle::Points, {name}});
   };
   add("as it is", effects.runs[0], effects.run_error);
   for (const EffectResult& effect : effects.over_time)

@@ -11,7 +11,7 @@
 
 namespace talisman::sequences {
 
-/// FLIP against measured time, of the knobs in one pass or of those in sprites.
+/// FLIP of each knob alone against measured time, of the knobs in one pass or of those in sprites.
 Plot knob_time_plot(const RendererReport& report, bool in_sprites);
 /// FLIP against the work that a knob is paid in, in % of its last rung: no clock.
 Plot knob_work_plot(const RendererReport& report, bool in_sprites);

@@ -61,7 +61,9 @@ constexpr Column<Measured> kMeasured[] = {
     {"wall_render_ms", [](const Measured& m) { return m.render.median_ms; }},
     {"wall_composite_ms", [](const Measured& m) { return m.composite.median_ms; }},
     {"wall_drawn_ms", [](const Measured& m) { return m.drawn.median_ms; }},
+    {"wall_cpu_ms", [](const Measured& m) { return m.cpu.median_ms; }},
     {"wall_drawn_spread_ms", [](const Measured& m) { return m.drawn.spread_ms; }},
+    {"wall_cpu_spread_ms", [](const Measured& m) { return m.cpu.spread_ms; }},
 };
 
 constexpr Column<PictureError> kError[] = {
@@ -73,11 +75,13 @@ constexpr Column<PictureError> kError[] = {
 };
 
 constexpr Column<RungResult> kRung[] = {
+    {"alone_psnr_db", [](const RungResult& r) { return r.alone.quality.psnr_db; }},
+    {"alone_flip", [](const RungResult& r) { return r.alone.quality.flip; }},
     {"work", [](const RungResult& r) { return r.work; }},
     {"work_front", [](const RungResult& r) { return double(r.work_front); }},
     {"wall_front", [](const RungResult& r) { return double(r.wall_front); }},
-    {"wall_gain_db_per_ms", [](const RungResult& r) { return r.gain.db_per_ms; }},
-    {"wall_gain_flip_per_ms", [](const RungResult& r) { return r.gain.flip_per_ms; }},
+    {"wall_gain_db_per_cpu_ms", [](const RungResult& r) { return r.gain.db_per_ms; }},
+    {"wall_gain_flip_per_cpu_ms", [](const RungResult& r) { return r.gain.flip_per_ms; }},
 };
 
 template <typename Columns>
@@ -172,8 +176,8 @@ std::string count(double value) {
 std::string kib(double bytes) { return count(bytes / 1024); }
 
 Table knob_table(const KnobResults& results) {
-  Table table{{"knob", "rung", "paid in", "work", "PSNR dB", "SSIM", "FLIP", "max", "RMS", "render ms",
-               "composite", "+-", "modelled", "dB/ms", "mFLIP/ms", "front"},
+  Table table{{"knob", "rung", "paid in", "work", "PSNR dB", "FLIP", "max", "RMS", "alone dB", "FLIP",
+               "render ms", "composite", "cpu ms", "+-", "modelled", "dB/ms", "mFLIP/ms", "front"},
               {},
               3};
   for (const RungResult& r : results.rungs) {
@@ -182,10 +186,11 @@ Table knob_table(const KnobResults& results) {
     const Quality& q = r.error.quality;
     table.rows.push_back(
         {r.rung == 0 ? knob.name : "", knob.rungs[r.rung].label, r.rung == 0 ? name(knob.work) : "",
-         count(r.work), fixed(q.psnr_db, 2), fixed(q.ssim, 4), fixed(q.flip, 4),
-         std::to_string(q.max_difference), fixed(r.error.rms_code_values, 2), fixed(m.render.median_ms, 1),
-         fixed(m.composite.median_ms, 1), fixed(m.drawn.spread_ms, 1), fixed(m.modelled_ms, 2),
-         fixed(r.gain.db_per_ms, 2), fixed(1000 * r.gain.flip_per_ms, 2),
+         count(r.work), fixed(q.psnr_db, 2), fixed(q.flip, 4), std::to_string(q.max_difference),
+         fixed(r.error.rms_code_values, 2), fixed(r.alone.quality.psnr_db, 2), fixed(r.alone.quality.flip, 4),
+         fixed(m.render.median_ms, 1), fixed(m.composite.median_ms, 1), fixed(m.cpu.median_ms, 1),
+         fixed(m.cpu.spread_ms, 1), fixed(m.modelled_ms, 2), fixed(r.gain.db_per_ms, 2),
+         fixed(1000 * r.gain.flip_per_ms, 2),
          std::string(r.work_front ? "w" : "") + (r.wall_front ? "t" : "")});
   }
   return table;
@@ -201,8 +206,8 @@ Table not_called_table(const RendererReport& report) {
 }
 
 Table effect_table(const EffectResults& effects) {
-  Table table{{"effect", "PSNR dB", "SSIM", "FLIP", "max", "ms", "+-", "% of all", "modelled", "KiB",
-               "shadow maps", "mirrors", "pixels shaded", "samples", "look-ups"},
+  Table table{{"effect", "PSNR dB", "SSIM", "FLIP", "max", "ms", "+-", "cpu ms", "+-", "% of all", "modelled",
+               "KiB", "shadow maps", "mirrors", "pixels shaded", "samples", "look-ups"},
               {},
               1};
   const Measured& with = effects.frames[0];
@@ -210,11 +215,13 @@ Table effect_table(const EffectResults& effects) {
     const Measured& without = effects.frames[effect.without];
     const Quality& q = effect.error.quality;
     const double ms = with.drawn.median_ms - without.drawn.median_ms;
+    const double cpu = with.cpu.median_ms - without.cpu.median_ms;
     const auto saved = [&](std::int64_t a, std::int64_t b) { return count(with.per_frame(a - b)); };
     table.rows.push_back({std::string(layers::name(effect.call.effect)), fixed(q.psnr_db, 2),
                           fixed(q.ssim, 4), fixed(q.flip, 4), std::to_string(q.max_difference), fixed(ms, 1),
-                          fixed(with.drawn.spread_ms + without.drawn.spread_ms, 1),
-                          fixed(100 * ms / with.drawn.median_ms, 1),
+                          fixed(with.drawn.spread_ms + without.drawn.spread_ms, 1), fixed(cpu, 1),
+                          fixed(with.cpu.spread_ms + without.cpu.spread_ms, 1),
+                          fixed(100 * cpu / with.cpu.median_ms, 1),
                           fixed(with.modelled_ms - without.modelled_ms, 2),
                           kib(double(with.memory_bytes() - without.memory_bytes())),
                           saved(with.passes.shadow_maps_drawn, without.passes.shadow_maps_drawn),
@@ -234,7 +241,8 @@ std::vector<std::string> run_row(const std::string& what, const Measured& m, con
           fixed(m.plan.median_ms, 2),
           fixed(m.render.median_ms, 1),
           fixed(m.composite.median_ms, 1),
-          fixed(m.drawn.spread_ms, 1),
+          fixed(m.cpu.median_ms, 1),
+          fixed(m.cpu.spread_ms, 1),
           fixed(m.modelled_ms, 2),
           kib(double(m.memory_bytes())),
           fixed(error.quality.psnr_db, 2),
@@ -244,8 +252,8 @@ std::vector<std::string> run_row(const std::string& what, const Measured& m, con
 }
 
 Table run_table(const EffectResults& effects) {
-  Table table{{"per frame", "renders", "polygons", "pixels", "plan ms", "render ms", "composite", "+-",
-               "modelled", "KiB", "PSNR dB", "SSIM", "FLIP", "max"},
+  Table table{{"per frame", "renders", "polygons", "pixels", "plan ms", "render ms", "composite", "cpu ms",
+               "+-", "modelled", "KiB", "PSNR dB", "SSIM", "FLIP", "max"},
               {},
               1};
   table.rows.push_back(run_row("as it is", effects.runs[0], effects.run_error));
@@ -321,11 +329,12 @@ void write_report(const RendererReport& report, const std::string& dir) {
 void print_report(const RendererReport& report, std::ostream& out) {
   const Workload& run = report.effects.run_load;
   out << report.sequence << ": " << report.display_px.x << "x" << report.display_px.y << " px; frames "
-      << list_of(report.knobs.frames) << " drawn from nothing; ms per frame, median of " << report.rounds
+      << list_of(report.knobs.frames) << " drawn from nothing; ms per frame (cpu: of all threads), median of "
+      << report.rounds
       << " interleaved rounds, +- its median deviation\n\nknobs, one turned at a time, against the truth: "
       << truth_in_words()
-      << "\nwork per frame; gain over the next coarser rung, - where the times do not differ; front: least "
-         "FLIP for its work (w), its time (t)\n"
+      << "\nalone: against the same with this knob as the truth has it; gain over the next coarser rung, - "
+         "where times do not differ; front: least FLIP for its work (w), time (t)\n"
       << plain_text(knob_table(report.knobs));
   if (!report.effects.pictures.empty())
     out << "\neffects of a frame, policy reference: what it buys (the picture without against with) and "
@@ -333,7 +342,7 @@ void print_report(const RendererReport& report, std::ostream& out) {
         << plain_text(effect_table(report.effects));
   if (!report.effects.over_time.empty())
     out << "\neffects over time: frames " << run.frames.front() << "-" << run.frames.back() << ", policy "
-        << report.policy << ", " << run.compared.size() << " of them compared with direct\n"
+        << report.policy << ", " << run.compared.size() << " of them compared with their direct\n"
         << plain_text(run_table(report.effects));
   const Table not_called = not_called_table(report);
   if (!not_called.rows.empty()) out << "\n" << plain_text(not_called);

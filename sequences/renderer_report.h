@@ -6,7 +6,7 @@
 /// - renderer.csv: one line per rung of every knob: error against the truth, counters, times, gain
 /// - renderer-effects.csv: one line per effect taken away: what it buys, what it costs, with and without
 /// - renderer.json: talisman.renderer/1, both, and what was not called for, with the reasons
-/// - renderer-pixels.svg, renderer-sprites.svg: FLIP against measured time, one series per knob
+/// - renderer-pixels.svg, renderer-sprites.svg: FLIP against processor time, one series per knob
 /// - renderer-pixels-work.svg, renderer-sprites-work.svg: FLIP against the count that a knob is paid in
 /// - renderer-effects.svg: what each effect of a frame costs and buys; renderer-over-time.svg: runs
 /// - knob-NAME.png: the same place of the picture at each rung, where the rungs differ most

@@ -56,7 +56,7 @@ class LadderBuilder {
 
   void rung(const std::string& label, const std::function<void(Variant&)>& change) {
     if (!called()) return;
-    Variant variant = ladder_.variants[knob().in_sprites ? kTruthInSprites : kTruth];
+    Variant variant = ladder_.variants[knob().base()];
     change(variant);
     knob().rungs.push_back({label, ladder_.variants.size()});
     ladder_.variants.push_back(std::move(variant));
@@ -69,7 +69,7 @@ class LadderBuilder {
   }
   /// The rung that is the truth itself, in one pass or in sprites.
   void truth_rung(const std::string& label) {
-    if (called()) knob().rungs.push_back({label, knob().in_sprites ? kTruthInSprites : kTruth});
+    if (called()) knob().rungs.push_back({label, knob().base()});
   }
 
   const Variant& given() const { return given_; }

@@ -41,6 +41,9 @@ enum class WorkKind {
 };
 const char* name(WorkKind kind);  ///< "fragments", "texture_samples", …
 
+inline constexpr std::size_t kTruth = 0;           ///< variant: direct, everything at its finest
+inline constexpr std::size_t kTruthInSprites = 1;  ///< the same under policy reference
+
 struct KnobRung {
   std::string label;        ///< "trilinear", "1024 px"
   std::size_t variant = 0;  ///< index into RendererLadder::variants; several rungs may share one
@@ -52,11 +55,11 @@ struct Knob {
   std::string why_not;          ///< empty: it is measured
   std::vector<KnobRung> rungs;  ///< coarse to fine; empty where the knob is not measured
   WorkKind work = WorkKind::PixelsShaded;
-  bool called() const { return why_not.empty(); }
-};
 
-inline constexpr std::size_t kTruth = 0;           ///< direct, everything at its finest
-inline constexpr std::size_t kTruthInSprites = 1;  ///< the same under policy reference
+  bool called() const { return why_not.empty(); }
+  /// The variant in which this knob, too, is as the truth has it.
+  std::size_t base() const { return in_sprites ? kTruthInSprites : kTruth; }
+};
 
 struct RendererLadder {
   std::vector<Variant> variants;

@@ -2,6 +2,7 @@
 #include "sequences/renderer_sheets.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "layers/check.h"
 #include "sequences/page.h"
@@ -42,6 +43,10 @@ std::string where(int frame, const Crop& crop) {
          std::to_string(crop.height) + " px at " + std::to_string(crop.x) + "," + std::to_string(crop.y);
 }
 
+std::string decibels(const PictureError& error) {
+  return std::isfinite(error.quality.psnr_db) ? fixed(error.quality.psnr_db, 1) + " dB" : "identical";
+}
+
 std::string file_name(std::string name) {
   std::replace(name.begin(), name.end(), ' ', '-');
   return name;
@@ -52,32 +57,35 @@ std::string file_name(std::string name) {
 Image8 knob_sheet(const KnobResults& results, std::size_t knob) {
   const Knob& shown = results.ladder.knobs[knob];
   TALISMAN_CHECK(shown.called());
-  const std::vector<Image8>& truth = results.measured[kTruth].pictures;
+  const std::vector<Image8>& base = results.measured[shown.base()].pictures;
   std::vector<const std::vector<Image8>*> others;
   for (const KnobRung& rung : shown.rungs) others.push_back(&results.measured[rung.variant].pictures);
-  const Place place = place_of(others, truth);
-  const Image8 truth_crop = cropped(truth[place.picture], place.crop);
-  std::vector<Image8> crops;
+  const Place place = place_of(others, base);
+  const auto crop_of = [&](std::size_t variant) {
+    return cropped(results.measured[variant].pictures[place.picture], place.crop);
+  };
+  const Image8 base_crop = crop_of(shown.base());
   int largest = 1;
-  for (const auto* other : others) {
-    crops.push_back(cropped((*other)[place.picture], place.crop));
-    largest = std::max(largest, largest_difference(crops.back(), truth_crop));
-  }
+  for (const KnobRung& rung : shown.rungs)
+    largest = std::max(largest, largest_difference(crop_of(rung.variant), base_crop));
   const int gain = gain_for(largest);
   std::vector<SheetColumn> columns;
-  for (const RungResult& rung : results.rungs) {
-    if (rung.knob != knob || rung.variant == kTruth) continue;
-    const double ms = results.measured[rung.variant].drawn.median_ms;
-    columns.push_back({{shown.rungs[rung.rung].label, fixed(rung.error.quality.psnr_db, 1) + " dB",
-                        "FLIP " + fixed(rung.error.quality.flip, 4), fixed(ms, 1) + " ms"},
-                       {crops[rung.rung], difference(crops[rung.rung], truth_crop, gain)}});
-  }
-  const double truth_ms = results.measured[kTruth].drawn.median_ms;
-  columns.push_back({{shown.in_sprites ? "truth" : shown.rungs.back().label + " = truth", "", "",
-                      fixed(truth_ms, 1) + " ms"},
-                     {truth_crop}});
+  const auto add = [&](const std::string& label, std::size_t variant, const PictureError& error) {
+    const double ms = results.measured[variant].cpu.median_ms;
+    const Image8 crop = crop_of(variant);
+    columns.push_back(
+        {{label, decibels(error), "FLIP " + fixed(error.quality.flip, 4), fixed(ms, 1) + " ms cpu"},
+         {crop, difference(crop, base_crop, gain)}});
+  };
+  for (const RungResult& rung : results.rungs)
+    if (rung.knob == knob) {
+      const char* mark = rung.variant == kTruth ? " = truth" : rung.variant == shown.base() ? " = base" : "";
+      add(shown.rungs[rung.rung].label + mark, rung.variant, rung.alone);
+    }
+  if (shown.in_sprites) add("truth", kTruth, error_of(results.measured[kTruth].pictures, base));
   return sheet_of({shown.name + ": " + where(results.frames[place.picture], place.crop),
-                   "below: difference from the truth, times " + std::to_string(gain)},
+                   std::string("below: difference from the ") + (shown.in_sprites ? "base" : "truth") +
+                       ", times " + std::to_string(gain)},
                   columns, kScale);
 }
 

@@ -2,8 +2,8 @@
 #pragma once
 
 /// The contact sheets of renderer_report.h: of all places and sampled frames the one where the rungs of a
-/// knob differ most from the truth, at each rung, the truth last; below, the difference from the truth,
-/// brightened by a power of two that is written above.
+/// knob differ most from its base (the picture with this knob, too, as the truth has it), at each rung, the
+/// truth last; below, the difference from the base, brightened by a power of two that is written above.
 
 #include <string>
 
