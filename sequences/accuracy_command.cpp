@@ -11,6 +11,7 @@
 #include "sequences/image_io.h"
 #include "sequences/page.h"
 #include "sequences/plot.h"
+#include "sequences/renderer_command.h"
 #include "sequences/solver_measure.h"
 
 namespace talisman::sequences {
@@ -219,14 +220,18 @@ void write_results(const std::vector<Rung>& rungs, const std::string& dir) {
 }  // namespace
 
 int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
-  const bool regulator = !options.regulator.sequence.empty();
-  if (options.solvers == regulator)
-    throw InputError("accuracy: " + std::string(regulator ? "two experiments" : "nothing to measure") +
-                     ", rule: either --solvers or --regulator SEQUENCE");
-  if (regulator) {
-    RegulatorCommandOptions asked = options.regulator;
-    asked.progress = options.progress;
-    return run_regulator_accuracy(asked, options.out, out);
+  const bool regulator = !options.regulator.sequence.empty(), renderer = !options.renderer.empty();
+  const int experiments = options.solvers + regulator + renderer;
+  if (experiments != 1)
+    throw InputError(
+        "accuracy: " + std::string(experiments == 0 ? "nothing to measure" : "more than one experiment") +
+        ", rule: one of --solvers, --regulator SEQUENCE, --renderer SEQUENCE");
+  RegulatorCommandOptions asked = options.regulator;
+  asked.progress = options.progress;
+  if (regulator) return run_regulator_accuracy(asked, options.out, out);
+  if (renderer) {
+    asked.sequence = options.renderer;
+    return run_renderer_accuracy(asked, options.out, out);
   }
   if (options.inputs < 1 || options.inputs > 100000)
     throw InputError("--inputs " + std::to_string(options.inputs) + ", rule: 1 … 100000");

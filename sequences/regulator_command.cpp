@@ -12,13 +12,6 @@
 namespace talisman::sequences {
 namespace {
 
-/// The sequence's own display, made smaller in both directions until its larger side is kLargestDefaultPx.
-std::string default_size(layers::ivec2 display_px) {
-  const double scale = std::min(1.0, double(kLargestDefaultPx) / std::max(display_px.x, display_px.y));
-  const auto scaled = [scale](int side) { return std::to_string(std::max(1L, std::lround(side * scale))); };
-  return scaled(display_px.x) + "x" + scaled(display_px.y);
-}
-
 /// Options as `render` would take them; the policy is any that needs no more of them.
 ResolvedRun resolved(const Sequence& sequence, const RegulatorCommandOptions& options,
                      const std::string& size) {
@@ -40,9 +33,15 @@ ExperimentFrames frames_of(const ResolvedRun& run, int every) {
 
 }  // namespace
 
+std::string default_experiment_size(layers::ivec2 display_px) {
+  const double scale = std::min(1.0, double(kLargestDefaultPx) / std::max(display_px.x, display_px.y));
+  const auto scaled = [scale](int side) { return std::to_string(std::max(1L, std::lround(side * scale))); };
+  return scaled(display_px.x) + "x" + scaled(display_px.y);
+}
+
 RegulatorReport measure_regulator_report(const Sequence& sequence, const RegulatorCommandOptions& options) {
-  const ResolvedRun run =
-      resolved(sequence, options, options.size.empty() ? default_size(sequence.display_px) : options.size);
+  const ResolvedRun run = resolved(
+      sequence, options, options.size.empty() ? default_experiment_size(sequence.display_px) : options.size);
   const ProgressKind progress = run.options.progress;
   RegulatorReport report;
   report.sequence = sequence.name;

@@ -26,6 +26,9 @@ struct RegulatorCommandOptions {
 inline constexpr int kLargestDefaultPx = 512;
 inline constexpr int kDefaultSamples = 20;
 
+/// The display made smaller in both directions until its larger side is kLargestDefaultPx, as "WxH".
+std::string default_experiment_size(layers::ivec2 display_px);
+
 /// All measurements. `options.sequence` is already read. Throws InputError.
 RegulatorReport measure_regulator_report(const Sequence& sequence, const RegulatorCommandOptions& options);
 

@@ -25,7 +25,8 @@
 ///   shadow_layer, specular_layer, reflection_layer, texture_layers
 ///                       the term stays in the sprite of its surface, and so do those other terms of that
 ///                       surface that cannot have a sprite of their own then: highlights and second texture
-///                       under a shadow or a reflection that is not factored (layers/shading.h)
+///                       under a shadow or a reflection that is not factored (layers/shading.h). Without
+///                       texture_layers a blend over time stands still, at the material's texture_blend
 ///
 /// An effect that is not called for is taken from nothing: the result is as it was given.
 

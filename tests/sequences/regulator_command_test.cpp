@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -12,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/accuracy_command.h"
+#include "tests/sequences/csv_rows.h"
 #include "tests/sequences/temporary_folder.h"
 #include "tests/support/sequences.h"
 
@@ -20,6 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using tests::content;
+using tests::rows_of;
+using tests::without_times;
 
 RegulatorCommandOptions quick() {
   RegulatorCommandOptions options;
@@ -33,37 +35,6 @@ RegulatorCommandOptions quick() {
 const Sequence& moving() {
   static const Sequence sequence = tests::moving_sequence(48);
   return sequence;
-}
-
-std::string content(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::vector<std::string> cells_of(const std::string& line) {
-  std::vector<std::string> cells(1);
-  for (const char c : line)
-    if (c == ',')
-      cells.emplace_back();
-    else
-      cells.back() += c;
-  return cells;
-}
-
-std::vector<std::vector<std::string>> rows_of(const std::string& csv) {
-  std::vector<std::vector<std::string>> rows;
-  std::istringstream in(csv);
-  for (std::string line; std::getline(in, line);) rows.push_back(cells_of(line));
-  return rows;
-}
-
-/// What does not depend on the clock.
-std::vector<std::vector<std::string>> without_times(const std::string& csv) {
-  std::vector<std::vector<std::string>> rows = rows_of(csv);
-  for (std::size_t k = rows[0].size(); k-- > 0;)
-    if (rows[0][k].rfind("wall_", 0) == 0)
-      for (auto& row : rows) row.erase(row.begin() + k);
-  return rows;
 }
 
 class RegulatorReportFiles : public testing::Test {
@@ -173,11 +144,13 @@ TEST(MeasureRegulatorReport, BadOptionsAreNamed) {
 
 TEST(RunAccuracy, ExactlyOneExperimentMustBeAskedFor) {
   std::ostringstream out;
-  AccuracyOptions none, both;
+  AccuracyOptions none, both, others;
   both.solvers = true;
   both.regulator.sequence = "canyon";
+  others.regulator.sequence = others.renderer = "canyon";
   EXPECT_THAT(tests::message_of([&] { run_accuracy(none, out); }), HasSubstr("nothing to measure"));
-  EXPECT_THAT(tests::message_of([&] { run_accuracy(both, out); }), HasSubstr("two experiments"));
+  EXPECT_THAT(tests::message_of([&] { run_accuracy(both, out); }), HasSubstr("more than one experiment"));
+  EXPECT_THAT(tests::message_of([&] { run_accuracy(others, out); }), HasSubstr("more than one experiment"));
 }
 
 }  // namespace
