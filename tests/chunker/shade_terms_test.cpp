@@ -5,6 +5,7 @@
 
 #include <tbb/global_control.h>
 
+#include "chunker/shade.h"
 #include "tests/chunker/shade_support.h"
 
 namespace talisman::chunker::tests {
