@@ -83,6 +83,19 @@ std::string shade_call(const Layer& layer, LayerKind kind, const std::string& wh
   return layer.kind == kind ? quoted("layer", layer.name) + " holds " + what : "";
 }
 
+/// "layer 'floor' mirrors 5 layers; one bounce: layer 'wall' reflects nothing in it"
+std::string call_of_reflection(std::span<const Layer> layers, const Layer& layer) {
+  if (!layer.holds.reflection) return {};
+  std::string why =
+      quoted("layer", layer.name) + " mirrors " + std::to_string(layer.reflected.size()) + " layers";
+  for (const Layer& other : layers) {
+    const int base = other.base < 0 ? other.id : other.base;
+    if (other.holds.reflection && std::count(layer.reflected.begin(), layer.reflected.end(), base) > 0)
+      return why + "; one bounce: " + quoted("layer", layers[base].name) + " reflects nothing in it";
+  }
+  return why;
+}
+
 /// What is asked of one layer, beside the layer itself.
 struct Context {
   const Scene& scene;
@@ -120,9 +133,7 @@ std::string call_of(const Context& context, const Layer& layer, Effect effect) {
     case Effect::SpecularLayer:
       return shade_call(layer, LayerKind::Specular, "the highlights of its base");
     case Effect::ReflectionMap:
-      return layer.holds.reflection ? quoted("layer", layer.name) + " mirrors " +
-                                          std::to_string(layer.reflected.size()) + " layers"
-                                    : "";
+      return call_of_reflection(context.layers, layer);
     case Effect::ReflectionLayer:
       return shade_call(layer, LayerKind::Reflection, "the mirrored picture");
     case Effect::TextureLayers:

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "layers/effects.h"
 #include "sequences/step.h"
 #include "tests/support/room.h"
 
@@ -126,6 +127,20 @@ TEST(Direct, MirrorInAMirrorShowsItsOwnColour) {
       shown += a.texel(x, y).b > 20 ? 1 : 0;
     }
   EXPECT_GT(shown, 500);  // the wall is in it
+}
+
+// … and `talisman inspect` says so, where it matters.
+TEST(Direct, InspectNamesTheMirrorThatReflectsNothingInAnother) {
+  const auto why = [](const Room& room) {
+    const Show show(room);
+    for (const layers::EffectCall& call :
+         layers::effects_called_for(show.room.scene, show.layers.layers, layers::RunEffects{}))
+      if (call.effect == layers::Effect::ReflectionMap) return call.why;
+    return std::string();
+  };
+  EXPECT_EQ(why(room_with_two_mirrors(0.5f, 0.5f)),
+            "layer 'floor' mirrors 2 layers; one bounce: layer 'wall' reflects nothing in it");
+  EXPECT_EQ(why(room_with_two_mirrors(0.5f, 0)), "layer 'floor' mirrors 2 layers");
 }
 
 // A ball that is sunk into the mirror by half: nothing of its lower half appears beside its upper one. The
