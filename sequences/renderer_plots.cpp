@@ -73,16 +73,18 @@ Plot effect_plot(const RendererReport& report) {
 Plot run_plot(const RendererReport& report) {
   Plot plot{"effects over time: time against error, without each (" + report.sequence + ")",
             {"measured processor time per frame", "ms", false},
-            {"FLIP against direct: less is better", "", true},
+            {"FLIP against its direct: less is better", "", true},
             {}};
   const EffectResults& effects = report.effects;
-  const auto add = [&](const std::string& name, const Measured& m, const PictureError& error) {
-    plot.series.push_back({name, {{m.cpu.median_ms, error.quality.flip}}, SeriesStyle::Points, {name}});
+  const auto add = [&](const std::string& name, const std::string& label, const Measured& m,
+                       const PictureError& error) {
+    plot.series.push_back({name, {{m.cpu.median_ms, error.quality.flip}}, SeriesStyle::Points, {label}});
   };
-  add("as it is", effects.runs[0], effects.run_error);
-  for (const EffectResult& effect : effects.over_time)
-    add("without " + std::string(layers::name(effect.call.effect)), effects.runs[effect.without],
-        effect.error);
+  add("as it is", "as it is", effects.runs[0], effects.run_error);
+  for (const EffectResult& effect : effects.over_time) {
+    const std::string name(layers::name(effect.call.effect));
+    add("without " + name, name, effects.runs[effect.without], effect.error);
+  }
   return plot;
 }
 

@@ -112,7 +112,7 @@ TEST(MeasureKnobs, FinerRungsAreNearer) {
     return rungs_of(knobs(), knob).at(rung).alone.quality.psnr_db;
   };
   EXPECT_LT(alone("samples", "1"), alone("samples", "4"));
-  EXPECT_LT(alone("shading", "flat"), alone("shading", "gouraud"));
+  // Not so flat and Gouraud shading: over the floor's large cells Gouraud smears the cone of the lamp.
   EXPECT_LT(alone("compression", "quality 30"), alone("compression", "quality 95"));
   EXPECT_LT(alone("sprite resolution", "0.25"), alone("sprite resolution", "0.71"));
   EXPECT_LT(alone("reflection layers", "0.125"), alone("reflection layers", "0.5"));

@@ -18,8 +18,9 @@ sequences::Sequence resting_sequence(int frames);
 sequences::Variant run_of(const sequences::Sequence& sequence);
 
 /// A sequence that calls for all effects (layers/effects.h) and needs no package: a mirroring floor with two
-/// textures and all shade layers, a ball that spins and has an open shutter, a pane, a bar that bends, a lamp
-/// that orbits and casts shadows, a camera that flies past; sprites are compressed. 96 × 72, threshold 1 px.
+/// textures and all shade layers, a ball that spins, a pane that crosses with an open shutter, a bar that
+/// bends, a lamp that sways and casts shadows, a camera that flies past; sprites are compressed. 96 × 72,
+/// threshold 1 px.
 sequences::Variant every_effect(int frames);
 
 }  // namespace talisman::tests
