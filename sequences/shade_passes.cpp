@@ -133,26 +133,45 @@ Mirrored draw_mirrored(const Pipeline& pipeline, ShadowMapStore& maps, const chu
   return mirrored;
 }
 
+/// What drawing `layer` looks up, kept as long as it is drawn.
+class LookedUp {
+ public:
+  LookedUp(const Pipeline& pipeline, ShadowMapStore& maps, const chunker::PreparedScene& prepared,
+           const SceneFrame& frame, const Layer& layer, const SpritePlacement& placement) {
+    if (layer.holds.shadows) by_light_ = maps_for(pipeline, maps, frame, shadow_lights(pipeline, layer));
+    inputs_.light = layer.light;
+    inputs_.shadow_maps = by_light_;
+    if (!layer.holds.reflection) return;
+    mirrored_ = draw_mirrored(pipeline, maps, prepared, frame, layer, placement);
+    inputs_.reflection = &mirrored_.picture.sprite;
+    inputs_.reflection_from_screen = mirrored_.reflection_from_screen;
+  }
+  LookedUp(const LookedUp&) = delete;
+  LookedUp& operator=(const LookedUp&) = delete;
+
+  ShadeInputs inputs(ShadeTerm term) const {
+    ShadeInputs inputs = inputs_;
+    inputs.term = term;
+    return inputs;
+  }
+  /// Of the passes behind it.
+  const chunker::RenderCounters& counters() const { return mirrored_.picture.counters; }
+
+ private:
+  std::vector<const chunker::ShadowMap*> by_light_;
+  Mirrored mirrored_;
+  ShadeInputs inputs_;
+};
+
 /// Draws `parts` as one term, with whatever `layer` holds.
 chunker::RenderResult draw_term(const Pipeline& pipeline, ShadowMapStore& maps,
                                 const chunker::PreparedScene& prepared, const SceneFrame& frame,
                                 std::span<const int> parts, const Layer& layer, ShadeTerm term,
                                 const SpritePlacement& placement) {
-  ShadeInputs inputs;
-  inputs.term = term;
-  inputs.light = layer.light;
-  std::vector<const chunker::ShadowMap*> by_light;
-  if (layer.holds.shadows) by_light = maps_for(pipeline, maps, frame, shadow_lights(pipeline, layer));
-  inputs.shadow_maps = by_light;
-  Mirrored mirrored;
-  if (layer.holds.reflection) {
-    mirrored = draw_mirrored(pipeline, maps, prepared, frame, layer, placement);
-    inputs.reflection = &mirrored.picture.sprite;
-    inputs.reflection_from_screen = mirrored.reflection_from_screen;
-  }
+  const LookedUp looked_up(pipeline, maps, prepared, frame, layer, placement);
   chunker::RenderResult result = chunker::render(prepared, frame, parts, pipeline.settings.view.display_px,
-                                                 placement, pipeline.settings.render, inputs);
-  result.counters += mirrored.picture.counters;
+                                                 placement, pipeline.settings.render, looked_up.inputs(term));
+  result.counters += looked_up.counters();
   return result;
 }
 
@@ -222,6 +241,23 @@ chunker::RenderResult draw_layer(const Pipeline& pipeline, ShadowMapStore& maps,
                                  const chunker::PreparedScene& prepared, const SceneFrame& frame,
                                  const Layer& layer, const SpritePlacement& placement) {
   return draw_term(pipeline, maps, prepared, frame, layer.parts, layer, term_of(layer), placement);
+}
+
+chunker::LinearImage draw_layer_linear(const Pipeline& pipeline, ShadowMapStore& maps,
+                                       const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                                       const Layer& layer, const SpritePlacement& placement) {
+  const LookedUp looked_up(pipeline, maps, prepared, frame, layer, placement);
+  return chunker::render_linear(prepared, frame, layer.parts, pipeline.settings.view.display_px, placement,
+                                pipeline.settings.render, looked_up.inputs(term_of(layer)));
+}
+
+std::vector<chunker::TermImage> draw_terms(const Pipeline& pipeline, ShadowMapStore& maps,
+                                           const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                                           const Layer& layer, const SpritePlacement& placement,
+                                           chunker::BasePasses base) {
+  const LookedUp looked_up(pipeline, maps, prepared, frame, layer, placement);
+  return chunker::render_terms(prepared, frame, layer.parts, pipeline.settings.view.display_px, placement,
+                               pipeline.settings.render, looked_up.inputs(ShadeTerm::Base), base);
 }
 
 chunker::RenderResult draw_all_in_one_pass(const Pipeline& pipeline, ShadowMapStore& maps,

@@ -16,7 +16,7 @@
 
 #include <vector>
 
-#include "chunker/render.h"
+#include "chunker/multipass.h"
 #include "chunker/shadow_map.h"
 #include "layers/polyhedron.h"
 #include "layers/state.h"
@@ -80,6 +80,19 @@ class ShadowMapStore {
 chunker::RenderResult draw_layer(const Pipeline& pipeline, ShadowMapStore& maps,
                                  const chunker::PreparedScene& prepared, const layers::SceneFrame& frame,
                                  const layers::Layer& layer, const layers::SpritePlacement& placement);
+
+/// What draw_layer encodes, as it is before that.
+chunker::LinearImage draw_layer_linear(const Pipeline& pipeline, ShadowMapStore& maps,
+                                       const chunker::PreparedScene& prepared,
+                                       const layers::SceneFrame& frame, const layers::Layer& layer,
+                                       const layers::SpritePlacement& placement);
+
+/// All terms that `layer` holds, one pass each (chunker/multipass.h).
+std::vector<chunker::TermImage> draw_terms(const Pipeline& pipeline, ShadowMapStore& maps,
+                                           const chunker::PreparedScene& prepared,
+                                           const layers::SceneFrame& frame, const layers::Layer& layer,
+                                           const layers::SpritePlacement& placement,
+                                           chunker::BasePasses base);
 
 /// All geometry in one pass, all terms at once. Of several mirrors only the first layer's shows something:
 /// one pass looks one reflection up. Multipliers of the compositor (fade, texture blend over time) are not
