@@ -118,14 +118,13 @@ std::string joined(const std::vector<std::string>& names) {
 }  // namespace
 
 Sequence load_sequence(const std::string& name_or_path) {
+  // A name means the same in every working directory; a file that happens to have it is ./NAME.
+  if (const std::string shipped = sequence_file_of(name_or_path); !shipped.empty()) return load_yaml(shipped);
   std::error_code error;
-  if (std::filesystem::is_regular_file(name_or_path, error))
-    return is_yaml(name_or_path) ? load_yaml(name_or_path) : load_model(name_or_path);
-  const std::string shipped = sequence_file_of(name_or_path);
-  if (shipped.empty())
+  if (!std::filesystem::is_regular_file(name_or_path, error))
     throw InputError("'" + name_or_path +
                      "' is no sequence and no file; sequences are: " + joined(known_sequences()));
-  return load_yaml(shipped);
+  return is_yaml(name_or_path) ? load_yaml(name_or_path) : load_model(name_or_path);
 }
 
 std::vector<std::string> known_sequences() { return sequence_names(); }

@@ -248,9 +248,9 @@ std::string json_of(const Summary& s) {
 std::string table_of(const Summary& s) {
   const double rendered = static_cast<double>(s.total(&FrameLine::polygons_rendered));
   const double reference = static_cast<double>(s.total(&FrameLine::polygons_reference));
-  std::string text =
-      format("%s: %zu frames of %dx%d px, policy %s, warp %s\n\n", s.sequence.c_str(), s.frames.size(),
-             s.display_px.x, s.display_px.y, s.policy.c_str(), s.warp.c_str());
+  std::string text = format("%s: %zu %s of %dx%d px, policy %s, warp %s\n\n", s.sequence.c_str(),
+                            s.frames.size(), s.frames.size() == 1 ? "frame" : "frames", s.display_px.x,
+                            s.display_px.y, s.policy.c_str(), s.warp.c_str());
   text += layer_rows(s) + "\n";
   text += format("  update rate       %.1f %% mean over layers, %.1f %% weighted by polygons\n",
                  100 * s.mean_update_rate(), 100 * s.cost_weighted_update_rate());

@@ -333,6 +333,13 @@ TEST_F(Tool, InspectPrintsTheEffectTable) {
   EXPECT_EQ(json["effects"]["texture"]["why"], "no material has a texture");
 }
 
+// A file in the working directory that has the name of a sequence, as the output of another program may.
+TEST_F(Tool, ASequenceIsFoundByNameBesideAFileOfThatName) {
+  write("carousel", "no sequence");
+  EXPECT_EQ(run("inspect carousel").exit_code, 0);
+  expect_bad_input("inspect ./carousel", {"./carousel", "cannot be read as a model"});
+}
+
 TEST_F(Tool, AccuracyOfTheRegulatorOnABareModel) {
   const Outcome outcome = run(
       "accuracy --regulator cube.obj --frames 0-11 --size 64x48 --quality-every 4 --progress none --out o");
