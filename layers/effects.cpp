@@ -58,7 +58,8 @@ std::string light_of(const Scene& scene, int light) {
 const char* name_of(OrderGroup group) {
   return group == OrderGroup::Background   ? "background"
          : group == OrderGroup::Foreground ? "foreground"
-                                           : "normal";
+         : group == OrderGroup::Normal     ? "normal"
+                                           : "of its own";
 }
 
 /// The first other layer of the same group; null: the groups order `layer` against all others. Shade layers
@@ -105,7 +106,12 @@ std::string call_of(const Context& context, const Layer& layer, Effect effect) {
     case Effect::VisibilitySort:
       return call_of_visibility_sort(context.layers, layer);
     case Effect::ColorWarp:
-      return layer.base < 0 ? light_change_of(scene, layer, context.carriers).why : "";
+      return layer.base < 0 && context.run.follows_light
+                 ? light_change_of(scene, layer, context.carriers).why
+                 : "";
+    case Effect::MipFilter:
+      if (!context.run.mip_filter) return {};
+      break;
     case Effect::ShadowMap:
       return layer.holds.shadows ? "shadows fall on " + quoted("layer", layer.name) : "";
     case Effect::ShadowLayer:
@@ -181,10 +187,13 @@ std::string why_no_shade_layer(const Scene& scene, std::span<const Layer> layers
   }
 }
 
-std::string why_not(const Scene& scene, std::span<const Layer> layers, Effect effect) {
+std::string why_not(const Scene& scene, std::span<const Layer> layers, const RunEffects& run,
+                    Effect effect) {
   switch (effect) {
-    case Effect::Texture:
     case Effect::MipFilter:
+      if (!run.mip_filter) return "the run does not ask for it";
+      [[fallthrough]];
+    case Effect::Texture:
       return "no material has a texture";
     case Effect::Lighting:
       return has_lights(scene) ? "no material is lit" : "the scene has no light";
@@ -203,7 +212,8 @@ std::string why_not(const Scene& scene, std::span<const Layer> layers, Effect ef
     case Effect::VisibilitySort:
       return "no two layers are in one group";
     case Effect::ColorWarp:
-      return "no light moves against a lit layer, and no highlight moves";
+      return run.follows_light ? "no light moves against a lit layer, and no highlight moves"
+                               : "the run does not follow the light";
     case Effect::ShadowMap:
       return why_no_shadow_map(scene, layers);
     case Effect::ReflectionMap:
@@ -306,7 +316,7 @@ std::vector<EffectCall> effects_called_for(const Scene& scene, std::span<const L
       call.called = true;
       call.layers.push_back(layer.id);
     }
-    if (!call.called) call.why = why_not(scene, layers, effect);
+    if (!call.called) call.why = why_not(scene, layers, run, effect);
     if (call.called && effect == Effect::ShadowMap) call.why = why_of_shadow_maps(scene, layers);
     table.push_back(std::move(call));
   }

@@ -20,7 +20,7 @@ namespace talisman::layers {
 
 enum class Effect {
   Texture,            ///< some drawn part has a textured material
-  MipFilter,          ///< the same textures, filtered when minified
+  MipFilter,          ///< the same textures, filtered when minified, unless the run asks for none
   Lighting,           ///< some drawn part is lit: normals and lights are evaluated
   SpecularHighlight,  ///< some lit material has specular > 0
   Translucency,       ///< opacity < 1 or a texture with alpha
@@ -55,6 +55,8 @@ struct EffectCall {
 /// The effects that a run asks for, whatever the scene.
 struct RunEffects {
   std::optional<int> compression_quality;  ///< empty: sprites are kept as they are
+  bool mip_filter = true;     ///< false: the run looks textures up in their finest level only
+  bool follows_light = true;  ///< false: neither a colour warp nor a fiducial of the light is asked for
 };
 
 /// Are there two layers that the author's groups do not order? Cost: O(layers).

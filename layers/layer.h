@@ -64,7 +64,7 @@ struct SurfacePlane {
 };
 
 /// The author's order. Groups are drawn in the order of these values; inside a group layers are sorted by who
-/// can hide whom (layers/visibility.h).
+/// can hide whom (layers/visibility.h). Any other number is a group too, at its place in the order.
 enum class OrderGroup { Background = -1, Normal = 0, Foreground = 1 };
 
 /// What an author writes: a name and the globs ('*' any run, '?' one character) of the parts.

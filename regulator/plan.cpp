@@ -189,8 +189,12 @@ std::string first_defect(const RegulatorOptions& o) {
   return {};
 }
 
+bool asks_for_light(const RegulatorOptions& options) {
+  return options.color_warp || options.photometric != 0 || options.light_angle_rad != 0;
+}
+
 bool follows_light(const RegulatorOptions& options) {
-  if (!options.color_warp && options.photometric == 0 && options.light_angle_rad == 0) return false;
+  if (!asks_for_light(options)) return false;
   switch (options.policy) {
     case Policy::Direct:
     case Policy::Reference:

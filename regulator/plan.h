@@ -138,7 +138,10 @@ struct FramePlan {
 
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options);
 
-/// Does the policy carry old sprites by warps at all, so that the light on them has to be followed?
+/// Do the options ask for the colour warp or a threshold of the light, whatever the policy?
+bool asks_for_light(const RegulatorOptions& options);
+
+/// … and does the policy carry old sprites by warps at all, so that the light on them has to be followed?
 bool follows_light(const RegulatorOptions& options);
 
 /// First broken rule ("hold_frames is 0, must be at least 1"), or empty.

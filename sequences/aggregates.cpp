@@ -91,11 +91,11 @@ std::vector<layers::Occluder> occluders_in_view(const Pipeline& authored,
 
 /// What the groups alone say, farthest group first; inside a group by id.
 std::vector<int> by_group(std::span<const layers::Occluder> occluders) {
+  std::vector<std::pair<layers::OrderGroup, int>> ranked;
+  for (const layers::Occluder& occluder : occluders) ranked.emplace_back(occluder.group, occluder.layer);
+  std::sort(ranked.begin(), ranked.end());
   std::vector<int> order;
-  for (const auto group :
-       {layers::OrderGroup::Background, layers::OrderGroup::Normal, layers::OrderGroup::Foreground})
-    for (const layers::Occluder& occluder : occluders)
-      if (occluder.group == group) order.push_back(occluder.layer);
+  for (const auto& [group, layer] : ranked) order.push_back(layer);
   return order;
 }
 

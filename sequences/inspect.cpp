@@ -24,7 +24,7 @@ const char* name_of(layers::OrderGroup group) {
     case layers::OrderGroup::Foreground:
       return "foreground";
   }
-  return "?";
+  return "own";
 }
 
 const char* name_of(layers::BoundKind kind) {
@@ -42,6 +42,7 @@ const char* name_of(layers::BoundKind kind) {
 std::vector<layers::EffectCall> effects_of(const Sequence& s) {
   layers::RunEffects run;
   if (s.compression) run.compression_quality = s.compression->quality;
+  run.follows_light = regulator::asks_for_light(s.regulator);
   return layers::effects_called_for(*s.scene, s.layers.layers, run);
 }
 

@@ -123,6 +123,9 @@ struct Summary {
   double planning_us_per_layer_and_frame() const;  ///< plan time over layers × frames
 };
 
+/// What the settings ask for, whatever the scene.
+layers::RunEffects run_effects(const Settings& settings);
+
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence);
 /// Adds one frame's decisions; aggregates are added to the layers when they are first shown.
 void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport& report,

@@ -56,8 +56,9 @@ std::vector<layers::LayerSpec> specs_of_model(const layers::Scene& scene, const 
   return specs;
 }
 
-void finish(Sequence& sequence, BuiltScene built, const std::vector<layers::LayerSpec>& specs) {
+void finish(Sequence& sequence, BuiltScene built, std::vector<layers::LayerSpec> specs) {
   sequence.layers = layers::factor(built.scene, specs);
+  sequence.layer_specs = std::move(specs);
   sequence.warnings.insert(sequence.warnings.end(), built.warnings.begin(), built.warnings.end());
   if (const int parts = sequence.layers.unassigned_parts; parts > 0)
     sequence.warnings.push_back(parts == 1 ? "1 part is taken by no layer and is not drawn"
@@ -85,7 +86,7 @@ Sequence load_yaml(const std::string& path) {
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   if (specs.empty()) specs = specs_of_model(built.scene, built.layer_tags);
   Sequence sequence = std::move(file.settings);
-  finish(sequence, std::move(built), specs);
+  finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) {
     file.settings.file = path;
     fail_at_layer(file, sequence.layers.defect);
@@ -103,8 +104,8 @@ Sequence load_model(const std::string& path) {
   sequence.frames =
       duration > 0 ? std::max(1, static_cast<int>(std::lround(duration * sequence.fps))) : kOrbitFrames;
   add_default_view(model.scene);
-  const auto specs = specs_of_model(model.scene, model.layer_tags);
-  finish(sequence, {std::move(model.scene), {}, std::move(model.warnings)}, specs);
+  std::vector<layers::LayerSpec> specs = specs_of_model(model.scene, model.layer_tags);
+  finish(sequence, {std::move(model.scene), {}, std::move(model.warnings)}, std::move(specs));
   if (!sequence.layers.defect.empty()) throw InputError(sequence.layers.defect, path);
   return sequence;
 }

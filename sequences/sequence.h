@@ -27,7 +27,8 @@ struct Sequence {
   double fps = 24;   ///< > 0; frame f is at f / fps seconds
   layers::ivec2 display_px{1024, 1024};
   std::shared_ptr<const layers::Scene> scene;
-  layers::LayerSet layers;
+  std::vector<layers::LayerSpec> layer_specs;  ///< what the author, or the model, asks for
+  layers::LayerSet layers;                     ///< layers::factor of both
   std::vector<layers::ExplicitPair> explicit_order;
   Cycles cycles = Cycles::Merge;
   Compositor compositor = Compositor::Talisman;

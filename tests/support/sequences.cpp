@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/support/sequences.h"
 
+#include <glm/gtc/quaternion.hpp>
+
+#include "tests/support/room.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::tests {
@@ -11,12 +14,115 @@ sequences::Sequence sequence_of(const char* name, layers::Scene scene, int frame
   sequence.name = name;
   sequence.frames = frames;
   sequence.display_px = {96, 72};
-  sequence.layers = layers::factor(scene, one_layer_per_part(scene));
+  sequence.layer_specs = one_layer_per_part(scene);
+  sequence.layers = layers::factor(scene, sequence.layer_specs);
   sequence.scene = std::make_shared<const layers::Scene>(std::move(scene));
   return sequence;
 }
 
+/// The bar of skinned_bar_scene beside the ball.
+void add_bar(Scene& scene) {
+  const Scene bar = skinned_bar_scene();
+  const int nodes = static_cast<int>(scene.nodes.size());
+  Node stand;
+  stand.name = "stand";
+  stand.local.translation = {-1.6, 0.1, 0};
+  scene.nodes.push_back(stand);
+  const int shift = nodes + 1;
+  for (Node node : bar.nodes) {
+    node.parent = node.parent < 0 ? nodes : node.parent + shift;
+    scene.nodes.push_back(node);
+  }
+  layers::Skin skin = bar.skins[0];
+  for (int& joint : skin.joints) joint += shift;
+  scene.skins.push_back(skin);
+  for (layers::Track track : bar.tracks) {
+    track.node += shift;
+    scene.tracks.push_back(track);
+  }
+  scene.meshes.push_back(bar.meshes[bar.parts[0].mesh]);
+  scene.materials.push_back(bar.materials[bar.parts[0].material]);
+  scene.parts.push_back({"bar", bar.parts[0].node + shift, static_cast<int>(scene.meshes.size()) - 1,
+                         static_cast<int>(scene.materials.size()) - 1, 0});
+}
+
+void add_pane(Scene& scene) {
+  Node stand;
+  stand.name = "pane";
+  stand.local.translation = {1.4, 0.9, 1};
+  scene.nodes.push_back(stand);
+  scene.meshes.push_back(quad_mesh(1.2));
+  scene.materials.emplace_back();
+  scene.materials.back().name = "glass";
+  scene.materials.back().base_color = {0.3f, 0.6f, 0.7f};
+  scene.materials.back().opacity = 0.4f;
+  scene.materials.back().two_sided = true;
+  scene.parts.push_back({"pane", static_cast<int>(scene.nodes.size()) - 1,
+                         static_cast<int>(scene.meshes.size()) - 1,
+                         static_cast<int>(scene.materials.size()) - 1, -1});
+}
+
+/// The lamp sways, the eye goes by.
+void add_motion(Scene& scene) {
+  layers::FlightTrack eye, lamp;
+  eye.position = {{0, 2}, {{-1, 2, 6}, {1, 2.2, 5.6}}, layers::Interpolation::Linear};
+  eye.target = {{0}, {{0, 0.6, 0}}, layers::Interpolation::Linear};
+  lamp.position = {{0, 2}, {{0, 4, 2}, {2, 4, 1}}, layers::Interpolation::Linear};
+  lamp.target = {{0}, {{0, 0, 0}}, layers::Interpolation::Linear};
+  scene.tracks.push_back({2, eye});
+  scene.tracks.push_back({3, lamp});
+}
+
 }  // namespace
+
+sequences::Variant run_of(const sequences::Sequence& sequence) {
+  sequences::Settings settings;
+  settings.regulator = sequence.regulator;
+  settings.view.display_px = sequence.display_px;
+  settings.fps = sequence.fps;
+  settings.frames = sequence.frames;
+  settings.explicit_order = sequence.explicit_order;
+  settings.compression = sequence.compression;
+  return {sequence, settings};
+}
+
+sequences::Variant every_effect(int frames) {
+  Room room;
+  room.casting().mirroring().shining().textured_twice().factored().spinning(1);
+  Light ambient;
+  ambient.name = "ambient";
+  ambient.kind = Light::Kind::Ambient;
+  ambient.color = vec3(0.35f);
+  room.scene.lights[0].direction = {0, 0, -1};
+  room.scene.lights[0].inner_cone_rad = 0.9;
+  room.scene.lights[0].outer_cone_rad = 1.2;
+  room.scene.lights[0].shadow.resolution_px = 128;
+  room.scene.lights.push_back(ambient);
+  room.scene.materials[0].texture_blend = {0.6f, 0.3f};
+  room.scene.materials[1].base_color = {0.8f, 0.25f, 0.2f};
+  room.scene.materials[1].specular = vec3(0.6f);
+  room.scene.materials[1].shininess = 40;
+  add_bar(room.scene);
+  add_pane(room.scene);
+  add_motion(room.scene);
+  room.specs[0].group = layers::OrderGroup::Background;
+  room.specs[0].shading.shadows->resolution_scale = 0.5;
+  room.specs[1].preferences.motion_blur = 0.5;
+  room.specs.push_back({"bar", {"bar"}});
+  room.specs.push_back({"pane", {"pane"}});
+
+  sequences::Sequence sequence;
+  sequence.name = "every effect";
+  sequence.frames = frames;
+  sequence.display_px = {96, 72};
+  sequence.compression = chunker::CompressionOptions{};
+  sequence.regulator.policy = regulator::Policy::Threshold;
+  sequence.regulator.geometric_px = 1;
+  sequence.layer_specs = room.specs;
+  sequence.layers = layers::factor(room.scene, room.specs);
+  sequence.scene = std::make_shared<const Scene>(std::move(room.scene));
+  return run_of(sequence);
+}
 
 sequences::Sequence moving_sequence(int frames) { return sequence_of("moving", moving_scene(), frames); }
 sequences::Sequence resting_sequence(int frames) { return sequence_of("resting", cube_scene(), frames); }

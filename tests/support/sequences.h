@@ -4,6 +4,7 @@
 /// Small workloads as sequences, for what runs on whole sequences.
 
 #include "sequences/sequence.h"
+#include "sequences/without_effect.h"
 
 namespace talisman::tests {
 
@@ -12,5 +13,13 @@ sequences::Sequence moving_sequence(int frames);
 
 /// cube_scene, in which nothing moves, likewise.
 sequences::Sequence resting_sequence(int frames);
+
+/// What `talisman render` makes of a sequence without any option.
+sequences::Variant run_of(const sequences::Sequence& sequence);
+
+/// A sequence that calls for all effects (layers/effects.h) and needs no package: a mirroring floor with two
+/// textures and all shade layers, a ball that spins and has an open shutter, a pane, a bar that bends, a lamp
+/// that orbits and casts shadows, a camera that flies past; sprites are compressed. 96 × 72, threshold 1 px.
+sequences::Variant every_effect(int frames);
 
 }  // namespace talisman::tests
