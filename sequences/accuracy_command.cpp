@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "sequences/experiment_options.h"
+#include "sequences/factoring_command.h"
 #include "sequences/image_io.h"
 #include "sequences/page.h"
 #include "sequences/plot.h"
@@ -219,14 +220,18 @@ void write_results(const std::vector<Rung>& rungs, const std::string& dir) {
 }  // namespace
 
 int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
-  const bool regulator = !options.regulator.sequence.empty();
-  if (options.solvers == regulator)
-    throw InputError("accuracy: " + std::string(regulator ? "two experiments" : "nothing to measure") +
-                     ", rule: either --solvers or --regulator SEQUENCE");
-  if (regulator) {
-    RegulatorCommandOptions asked = options.regulator;
-    asked.progress = options.progress;
-    return run_regulator_accuracy(asked, options.out, out);
+  const bool regulator = !options.regulator.sequence.empty(), factoring = !options.factoring.empty();
+  const int experiments = options.solvers + regulator + factoring;
+  if (experiments != 1)
+    throw InputError(
+        "accuracy: " + std::string(experiments == 0 ? "nothing to measure" : "more than one experiment") +
+        ", rule: one of --solvers, --regulator SEQUENCE, --factoring SEQUENCE");
+  RegulatorCommandOptions asked = options.regulator;
+  asked.progress = options.progress;
+  if (regulator) return run_regulator_accuracy(asked, options.out, out);
+  if (factoring) {
+    asked.sequence = options.factoring;
+    return run_factoring_accuracy(asked, options.out, out);
   }
   if (options.inputs < 1 || options.inputs > 100000)
     throw InputError("--inputs " + std::to_string(options.inputs) + ", rule: 1 … 100000");

@@ -12,13 +12,6 @@
 namespace talisman::sequences {
 namespace {
 
-/// The sequence's own display, made smaller in both directions until its larger side is kLargestDefaultPx.
-std::string default_size(layers::ivec2 display_px) {
-  const double scale = std::min(1.0, double(kLargestDefaultPx) / std::max(display_px.x, display_px.y));
-  const auto scaled = [scale](int side) { return std::to_string(std::max(1L, std::lround(side * scale))); };
-  return scaled(display_px.x) + "x" + scaled(display_px.y);
-}
-
 /// Options as `render` would take them; the policy is any that needs no more of them.
 ResolvedRun resolved(const Sequence& sequence, const RegulatorCommandOptions& options,
                      const std::string& size) {
@@ -30,7 +23,9 @@ ResolvedRun resolved(const Sequence& sequence, const RegulatorCommandOptions& op
   return resolve(line, sequence, true);
 }
 
-ExperimentFrames frames_of(const ResolvedRun& run, int every) {
+}  // namespace
+
+ExperimentFrames experiment_frames(const ResolvedRun& run, int every) {
   if (every < 0)
     throw InputError("--quality-every is " + std::to_string(every) + ", must be at least 0 (0: automatic)");
   const int frames = run.options.last_frame - run.options.first_frame + 1;
@@ -38,17 +33,21 @@ ExperimentFrames frames_of(const ResolvedRun& run, int every) {
   return {run.options.first_frame, run.options.last_frame, every};
 }
 
-}  // namespace
+std::string default_experiment_size(layers::ivec2 display_px) {
+  const double scale = std::min(1.0, double(kLargestDefaultPx) / std::max(display_px.x, display_px.y));
+  const auto scaled = [scale](int side) { return std::to_string(std::max(1L, std::lround(side * scale))); };
+  return scaled(display_px.x) + "x" + scaled(display_px.y);
+}
 
 RegulatorReport measure_regulator_report(const Sequence& sequence, const RegulatorCommandOptions& options) {
-  const ResolvedRun run =
-      resolved(sequence, options, options.size.empty() ? default_size(sequence.display_px) : options.size);
+  const ResolvedRun run = resolved(
+      sequence, options, options.size.empty() ? default_experiment_size(sequence.display_px) : options.size);
   const ProgressKind progress = run.options.progress;
   RegulatorReport report;
   report.sequence = sequence.name;
   report.warp = warp::name(run.settings.curve);
   report.display_px = run.settings.view.display_px;
-  report.frames = frames_of(run, options.quality_every);
+  report.frames = experiment_frames(run, options.quality_every);
   for (const layers::Layer& layer : sequence.layers.layers) report.layers.push_back(layer.name);
   const double polygons = reference_polygons_per_frame(sequence, run.settings, report.frames);
   report.settings = measure_regulator(

@@ -177,7 +177,7 @@ TEST(RunAccuracy, ExactlyOneExperimentMustBeAskedFor) {
   both.solvers = true;
   both.regulator.sequence = "canyon";
   EXPECT_THAT(tests::message_of([&] { run_accuracy(none, out); }), HasSubstr("nothing to measure"));
-  EXPECT_THAT(tests::message_of([&] { run_accuracy(both, out); }), HasSubstr("two experiments"));
+  EXPECT_THAT(tests::message_of([&] { run_accuracy(both, out); }), HasSubstr("more than one experiment"));
 }
 
 }  // namespace
