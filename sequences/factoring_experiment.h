@@ -70,7 +70,7 @@ struct FactoredLayer {
 
 /// Values of measured error by predicted error, in cells of 1/kCellsOfWhite.
 using ErrorCells = std::map<std::pair<int, int>, std::int64_t>;
-inline constexpr int kCellsOfWhite = 512;
+inline constexpr int kCellsOfWhite = 8192;
 
 /// What is compared with the truth, in this order.
 enum class Picture { OverAlone, ShadeResolution, Placement, Reuse, OnePass, UnfactoredReuse };

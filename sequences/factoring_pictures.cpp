@@ -42,6 +42,7 @@ std::string percent_text(double share) {
 void draw_scale(Image8& image, double full) {
   constexpr int kWidth = 120, kHeight = 8, kMargin = 6;
   const ivec2 at{kMargin, image.height - kMargin - kHeight};
+  paste(image, plain_image(kWidth + 80, kHeight + 22, {255, 255, 255}), {0, at.y - 16});
   for (int x = 0; x < kWidth; ++x)
     paste(image, plain_image(1, kHeight, signed_color(2.0 * x / (kWidth - 1) - 1)), {at.x + x, at.y});
   constexpr Rgb kInk{40, 40, 40};
@@ -76,6 +77,15 @@ Image8 enlarged(const ShownFrame& frame, const Image8& truth, const Image8& show
   paste(both, magnified(shown, center, {half - 2, truth.height}, scale), {width - half + 2, 0});
   return both;
 }
+
+/// So that the predicted errors fall into about kBins bins.
+int cells_per_bin(const ErrorCells& cells) {
+  constexpr int kBins = 40;
+  if (cells.empty()) return 1;
+  return std::max((cells.rbegin()->first.first - cells.begin()->first.first) / kBins, 1);
+}
+
+int bin_of(int cell, int width) { return static_cast<int>(std::lround(static_cast<double>(cell) / width)); }
 
 std::string amplification(double full) { return " X" + fixed(1 / full, 1 / full < 10 ? 1 : 0); }
 
@@ -116,28 +126,33 @@ Image8 factoring_sheet(const FactoringReport& report) {
 }
 
 Plot prediction_plot(const FactoringReport& report) {
-  Plot plot{"error of over alone (" + report.sequence +
-                "): measured against predicted, a point per cell of 1/" + std::to_string(kCellsOfWhite) +
-                " of white",
+  const int width = cells_per_bin(report.result.cells);
+  const double bin_percent = 100.0 * width / kCellsOfWhite;
+  Plot plot{"error of over alone (" + report.sequence + "), pixels by predicted error in bins of " +
+                fixed(bin_percent, 3) + " %",
             {"predicted error, linear light", "% of white", false},
             {"measured error", "% of white", false},
             {}};
-  PlotSeries cells{"cell with values", {}, SeriesStyle::Cloud, {}};
-  PlotSeries mean{"mean of a bin of predicted error", {}, SeriesStyle::LinePoints, {}};
-  PlotSeries equal{"measured = predicted", {}, SeriesStyle::Line, {}};
-  constexpr double kPercent = 100.0 / kCellsOfWhite;
-  std::map<int, std::pair<std::int64_t, double>> bins;  // by predicted: values, sum of measured
+  std::map<std::pair<int, int>, std::int64_t> points;       // by predicted and measured bin
+  std::map<int, std::pair<std::int64_t, double>> measured;  // by predicted bin: values, their sum
   for (const auto& [cell, values] : report.result.cells) {
-    cells.points.push_back({cell.first * kPercent, cell.second * kPercent});
-    bins[cell.first].first += values;
-    bins[cell.first].second += static_cast<double>(values) * cell.second;
+    const int predicted = bin_of(cell.first, width);
+    points[{predicted, bin_of(cell.second, width)}] += values;
+    measured[predicted].first += values;
+    measured[predicted].second += static_cast<double>(values) * cell.second;
   }
-  for (const auto& [predicted, sum] : bins)
-    mean.points.push_back({predicted * kPercent, sum.second / static_cast<double>(sum.first) * kPercent});
-  if (!bins.empty())
-    for (const int end : {bins.begin()->first, bins.rbegin()->first})
-      equal.points.push_back({end * kPercent, end * kPercent});
-  plot.series = {cells, mean, equal};
+  PlotSeries some{"some pixel", {}, SeriesStyle::Cloud, {}};
+  PlotSeries mean{"mean of a bin", {}, SeriesStyle::LinePoints, {}};
+  PlotSeries equal{"measured = predicted", {}, SeriesStyle::Line, {}};
+  for (const auto& [bins, values] : points)
+    some.points.push_back({bins.first * bin_percent, bins.second * bin_percent});
+  for (const auto& [bin, sum] : measured)
+    mean.points.push_back(
+        {bin * bin_percent, 100.0 / kCellsOfWhite * sum.second / static_cast<double>(sum.first)});
+  if (!measured.empty())
+    for (const int end : {measured.begin()->first, measured.rbegin()->first})
+      equal.points.push_back({end * bin_percent, end * bin_percent});
+  plot.series = {some, mean, equal};
   return plot;
 }
 
@@ -163,8 +178,10 @@ void write_factoring_pictures(const FactoringReport& report, const std::string& 
   write_png(dir + "/factoring-predicted.png", error_map(worst, ErrorMap::Predicted, full));
   write_png(dir + "/factoring-difference.png",
             error_map(worst, ErrorMap::Difference, full / kDifferenceZoom));
-  write_plot(dir, "factoring-prediction", prediction_plot(report));
-  write_plot(dir, "factoring-losses", losses_plot(report));
+  PlotFiles files;
+  files.width_px = 1000;
+  write_plot(dir, "factoring-prediction", prediction_plot(report), files);
+  write_plot(dir, "factoring-losses", losses_plot(report), files);
 }
 
 }  // namespace talisman::sequences

@@ -117,19 +117,21 @@ std::vector<FactoredLayer> layers_and_frame(const FactoringReport& report) {
 
 std::string percent(double share, int digits) { return fixed(100 * share, digits); }
 
+std::string rms_and_max(const ErrorSum& sum) {
+  return percent(sum.rms(), 4) + " / " + percent(sum.largest, 2);
+}
+
 Table prediction_table(const FactoringReport& report) {
-  Table table{{"factored alone", "shades", "by formula", "max", "predicted", "max", "measured", "max",
-               "unexplained", "max", "bound", "of it", "beyond", "elsewhere max"},
+  Table table{{"factored alone", "shades", "by formula", "predicted", "measured", "unexplained", "elsewhere",
+               "bound", "of it %", "beyond"},
               {},
               1};
   for (const FactoredLayer& layer : layers_and_frame(report)) {
     const PredictionCheck& c = layer.check;
-    table.rows.push_back(
-        {layer.name, std::to_string(layer.shade_layers), percent(c.by_formula.rms(), 4),
-         percent(c.by_formula.largest, 2), percent(c.predicted.rms(), 4), percent(c.predicted.largest, 2),
-         percent(c.measured.rms(), 4), percent(c.measured.largest, 2), percent(c.unexplained.rms(), 4),
-         percent(c.unexplained.largest, 2), percent(c.largest_bound, 2), percent(c.largest_share_of_bound, 1),
-         std::to_string(c.beyond_bound), percent(c.elsewhere.largest, 2)});
+    table.rows.push_back({layer.name, std::to_string(layer.shade_layers), rms_and_max(c.by_formula),
+                          rms_and_max(c.predicted), rms_and_max(c.measured), rms_and_max(c.unexplained),
+                          rms_and_max(c.elsewhere), percent(c.largest_bound, 2),
+                          percent(c.largest_share_of_bound, 1), std::to_string(c.beyond_bound)});
   }
   return table;
 }
@@ -234,11 +236,13 @@ void print_report(const FactoringReport& report, std::ostream& out) {
       << report.result.sampled.size() << " of them drawn and compared (one in " << report.frames.every
       << "), " << report.display_px.x << "x" << report.display_px.y << " px, policy " << report.policy
       << ", warp " << report.warp
-      << "\n\nover alone: error of the frame, RMS and largest, % of white in linear light; unexplained: "
-         "measured - predicted;"
-         "\nbound: of rounding (8-bit sprites, 16-bit compositor), of it: the largest share of its own bound "
-         "that an error reaches (%);"
-         "\nbeyond: values beyond their bound; elsewhere: where nothing is predicted\n"
+      << "\n\nover alone: error of the frame, RMS / largest, % of white in linear light; predicted: by the "
+         "formula and what it does not know;"
+         "\nunexplained: measured - predicted; elsewhere: measured where nothing is predicted; bound: of "
+         "rounding (8-bit sprites, 16-bit compositor);"
+         "\nof it: the largest share of its own bound that an unexplained error reaches; beyond: how many "
+         "are "
+         "larger\n"
       << plain_text(prediction_table(report))
       << "\nwhat is lost, against the unfactored truth: code values of the sRGB frame; each + adds to the "
          "line "
