@@ -17,6 +17,7 @@ struct Bins {
   layers::ivec2 chunks{0, 0};
   std::vector<std::uint32_t> first;  ///< chunks + 1 offsets into `triangles`
   std::vector<std::uint32_t> triangles;
+  int count() const { return static_cast<int>(first.size()) - 1; }
   std::span<const std::uint32_t> of(int chunk) const {
     return {triangles.data() + first[chunk], triangles.data() + first[chunk + 1]};
   }

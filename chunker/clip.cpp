@@ -30,7 +30,8 @@ ClipVertex crossing(const ClipVertex& inner, double inner_distance, const ClipVe
   return {inner.point + (outer.point - inner.point) * t, inner.weights + (outer.weights - inner.weights) * t};
 }
 
-ClippedPolygon cut(const ClippedPolygon& polygon, const ClipPlane& plane) {
+template <typename Distance>
+ClippedPolygon cut(const ClippedPolygon& polygon, const Distance& distance) {
   ClippedPolygon result;
   const auto add = [&result](const ClipVertex& v) {
     // Rounding can make a nearly flat polygon cross a plane more than twice; such a sliver covers nothing.
@@ -39,7 +40,7 @@ ClippedPolygon cut(const ClippedPolygon& polygon, const ClipPlane& plane) {
   for (int i = 0; i < polygon.count; ++i) {
     const ClipVertex& a = polygon.vertices[i];
     const ClipVertex& b = polygon.vertices[(i + 1) % polygon.count];
-    const double da = plane.distance(a.point), db = plane.distance(b.point);
+    const double da = distance(a.point), db = distance(b.point);
     if (da >= 0) add(a);
     if (da >= 0 && db < 0) add(crossing(a, da, b, db));
     if (da < 0 && db >= 0) add(crossing(b, db, a, da));
@@ -48,6 +49,13 @@ ClippedPolygon cut(const ClippedPolygon& polygon, const ClipPlane& plane) {
 }
 
 }  // namespace
+
+double HalfSpace::height(const dvec3& p) const {
+  const dvec3 terms = normal * p;
+  const double above = ((terms.x + terms.y) + terms.z) - offset;
+  const double largest = std::abs(terms.x) + std::abs(terms.y) + std::abs(terms.z) + std::abs(offset);
+  return std::abs(above) <= kOnPlane * largest ? 0 : above;
+}
 
 ClippedPolygon clip_triangle(const std::array<layers::dvec3, 3>& corners, const ClipRegion& region) {
   ClippedPolygon polygon;
@@ -59,8 +67,10 @@ ClippedPolygon clip_triangle(const std::array<layers::dvec3, 3>& corners, const 
   polygon.count = 3;
   for (const ClipPlane& plane : planes_of(region)) {
     if (polygon.count < 3) break;
-    polygon = cut(polygon, plane);
+    polygon = cut(polygon, [&](const dvec3& p) { return plane.distance(p); });
   }
+  if (region.kept && polygon.count >= 3)
+    polygon = cut(polygon, [&](const dvec3& p) { return region.kept->height(p); });
   if (polygon.count < 3) polygon.count = 0;
   return polygon;
 }

@@ -210,6 +210,24 @@ void append(PartAssembly& assembly, std::vector<Block> blocks, std::uint32_t bat
   }
 }
 
+/// The first of `choices` that names the part, or null.
+template <typename Choice>
+const Choice* choice_of(std::span<const Choice> choices, int part) {
+  const auto names = [part](const Choice& choice) {
+    return choice.parts.empty() || std::binary_search(choice.parts.begin(), choice.parts.end(), part);
+  };
+  const auto found = std::find_if(choices.begin(), choices.end(), names);
+  return found == choices.end() ? nullptr : &*found;
+}
+
+PartInputs own_inputs(const ShadeInputs& inputs, int part, const DrawList& list) {
+  PartInputs own;
+  if (const Reflection* reflection = choice_of(inputs.reflections, part))
+    own.reflection = &list.reflections[reflection - inputs.reflections.data()];
+  if (const TextureBlend* blend = choice_of(inputs.texture_blends, part)) own.texture_blend = blend->factors;
+  return own;
+}
+
 }  // namespace
 
 void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& frame,
@@ -221,15 +239,17 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
   list.size_px = placement.empty() ? layers::ivec2{0, 0} : placement.size_px;
   list.lights = light_set(frame, inputs);
   list.term = inputs.term;
-  list.reflection = {inputs.reflection, inputs.reflection_from_screen * placement.screen_from_sprite};
+  for (const Reflection& r : inputs.reflections)
+    list.reflections.push_back({r.picture, r.picture_from_screen * placement.screen_from_sprite});
   list.batches.reserve(parts.size());
-  const auto view = sprite_view(frame, display_px, placement);
+  const auto view = sprite_view(frame, display_px, placement, inputs.kept);
   for (const int index : parts) {
     const layers::Part& part = scene.parts[index];
     const layers::Mesh& mesh = scene.meshes[part.mesh];
     list.polygons_in += mesh.triangle_count();
     if (!view) continue;
-    const Shader shader = make_shader(prepared, part, list.lights, options, inputs, &list.reflection);
+    const Shader shader =
+        make_shader(prepared, part, list.lights, options, inputs, own_inputs(inputs, index, list));
     if (shader.opacity == 0) continue;
     list.batches.push_back({shader, {}});
     const bool flat = shader.lit && (options.shading == Shading::Flat || mesh.normals.empty());

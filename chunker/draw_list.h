@@ -26,8 +26,8 @@ struct Batch {
 
 struct DrawList {
   layers::ivec2 size_px{0, 0};
-  LightSet lights;              ///< shaders refer to it: a list is not copied
-  ReflectionLookup reflection;  ///< likewise
+  LightSet lights;                            ///< shaders refer to it: a list is not copied
+  std::vector<ReflectionLookup> reflections;  ///< likewise, one per ShadeInputs::reflections
   ShadeTerm term = ShadeTerm::Full;
   std::vector<Batch> batches;
   std::vector<Triangle> triangles;

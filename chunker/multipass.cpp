@@ -59,7 +59,7 @@ std::vector<TermImage> render_terms(const PreparedScene& prepared, const layers:
   const layers::Scene& scene = prepared.scene();
   if (any_material(scene, parts, [](const auto& m) { return m.specular != layers::vec3(0); }))
     pass(ShadeTerm::Specular);
-  if (inputs.reflection != nullptr &&
+  if (!inputs.reflections.empty() &&
       any_material(scene, parts, [](const auto& m) { return m.reflectivity > 0; }))
     pass(ShadeTerm::Reflection);
   return terms;

@@ -27,25 +27,36 @@ void check_options(const layers::SpritePlacement& placement, const RenderOptions
   TALISMAN_CHECK(options.max_anisotropy >= 1 && options.max_anisotropy <= 16);
 }
 
-std::vector<int> chunks_with_work(const Bins& bins) {
-  std::vector<int> chunks;
-  for (int c = 0; c + 1 < static_cast<int>(bins.first.size()); ++c)
-    if (!bins.of(c).empty()) chunks.push_back(c);
-  return chunks;
+/// The chunks in which there is something to draw.
+struct Work {
+  Bins bins;
+  std::vector<int> places;
+};
+
+Work set_up(const PreparedScene& prepared, const layers::SceneFrame& frame, std::span<const int> parts,
+            layers::ivec2 display_px, const layers::SpritePlacement& placement, const RenderOptions& options,
+            const ShadeInputs& inputs, DrawList& list) {
+  check_options(placement, options);
+  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
+  Work work{bin_triangles(list.triangles, list.size_px), {}};
+  for (int c = 0; c < work.bins.count(); ++c)
+    if (!work.bins.of(c).empty()) work.places.push_back(c);
+  return work;
 }
 
-/// Draws every place in `places`; finished chunks go to `take(index of the place, chunk)`.
+/// Draws every place; finished chunks go to `take(index of the place, chunk)`.
 template <typename Take>
-RenderCounters draw_chunks(const DrawList& list, const Bins& bins, const std::vector<int>& places,
-                           const RenderOptions& options, LinearImage* linear, const Take& take) {
+RenderCounters draw_chunks(const DrawList& list, const Work& work, const RenderOptions& options,
+                           LinearImage* linear, const Take& take) {
+  const std::vector<int>& places = work.places;
+  const int columns = work.bins.chunks.x;
   tbb::enumerable_thread_specific<ChunkRenderer> renderers(
       [&] { return ChunkRenderer(list, options, linear); });
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
     ChunkRenderer& renderer = renderers.local();
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
-      const layers::ivec2 origin(places[i] % bins.chunks.x * kChunkSize,
-                                 places[i] / bins.chunks.x * kChunkSize);
-      take(i, renderer.draw(bins.of(places[i]), origin));
+      const layers::ivec2 origin(places[i] % columns * kChunkSize, places[i] / columns * kChunkSize);
+      take(i, renderer.draw(work.bins.of(places[i]), origin));
     }
   });
   RenderCounters counters;
@@ -107,16 +118,13 @@ RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& fra
                     std::span<const int> parts, layers::ivec2 display_px,
                     const layers::SpritePlacement& placement, const RenderOptions& options,
                     const ShadeInputs& inputs) {
-  check_options(placement, options);
   DrawList list;
-  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
-  const Bins bins = bin_triangles(list.triangles, list.size_px);
-  const std::vector<int> places = chunks_with_work(bins);
-  std::vector<Chunk> chunks(places.size());
+  const Work work = set_up(prepared, frame, parts, display_px, placement, options, inputs, list);
+  std::vector<Chunk> chunks(work.places.size());
   RenderResult result;
-  result.counters = draw_chunks(list, bins, places, options, nullptr,
+  result.counters = draw_chunks(list, work, options, nullptr,
                                 [&](std::size_t i, const Chunk& chunk) { chunks[i] = chunk; });
-  result.sprite = Sprite::assemble(list.size_px, places, chunks);
+  result.sprite = Sprite::assemble(list.size_px, work.places, chunks);
   result.counters.chunks_rendered = result.sprite.stored_chunks();
   result.counters.chunks_clear = result.sprite.clear_chunks();
   return result;
@@ -126,18 +134,14 @@ LinearImage render_linear(const PreparedScene& prepared, const layers::SceneFram
                           std::span<const int> parts, layers::ivec2 display_px,
                           const layers::SpritePlacement& placement, const RenderOptions& options,
                           const ShadeInputs& inputs) {
-  check_options(placement, options);
   DrawList list;
-  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
-  const Bins bins = bin_triangles(list.triangles, list.size_px);
-  const std::vector<int> places = chunks_with_work(bins);
+  const Work work = set_up(prepared, frame, parts, display_px, placement, options, inputs, list);
   LinearImage image;
   image.size_px = list.size_px;
   image.texels.resize(static_cast<std::size_t>(list.size_px.x) * list.size_px.y);
-  image.counters = draw_chunks(list, bins, places, options, &image, [](std::size_t, const Chunk&) {});
-  image.counters.chunks_rendered = static_cast<std::int64_t>(places.size());
-  image.counters.chunks_clear =
-      static_cast<std::int64_t>(bins.first.size()) - 1 - image.counters.chunks_rendered;
+  image.counters = draw_chunks(list, work, options, &image, [](std::size_t, const Chunk&) {});
+  image.counters.chunks_rendered = static_cast<std::int64_t>(work.places.size());
+  image.counters.chunks_clear = work.bins.count() - image.counters.chunks_rendered;
   return image;
 }
 

@@ -21,8 +21,10 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 
+#include "chunker/clip.h"
 #include "chunker/sprite.h"
 #include "layers/layer.h"
 #include "layers/scene.h"
@@ -114,6 +116,19 @@ enum class ShadeTerm {
   Texture2,
 };
 
+/// What one mirror shows: the scene as its mirrored camera sees it (chunker/mirror.h).
+struct Reflection {
+  const Sprite* picture = nullptr;      ///< null: nothing
+  layers::Affine2 picture_from_screen;  ///< where it lies; the default: texel on pixel of the display
+  std::span<const int> parts;           ///< that show it, ascending; empty: all
+};
+
+/// Factors of the two textures of some parts, in place of Material::texture_blend.
+struct TextureBlend {
+  layers::vec2 factors{1, 0};  ///< 0 … 1
+  std::span<const int> parts;  ///< ascending; empty: all
+};
+
 /// What one call draws, and what it looks up. What a term does not need is not looked at.
 struct ShadeInputs {
   ShadeTerm term = ShadeTerm::Full;
@@ -121,9 +136,13 @@ struct ShadeInputs {
   std::span<const ShadowMap* const> shadow_maps;
   /// Index of the one light whose shadow or highlight is drawn; -1: of all. Used by Shadow and Specular.
   int light = -1;
-  /// The scene as a mirrored camera sees it (chunker/mirror.h), null: none. Used by Full and Reflection.
-  const Sprite* reflection = nullptr;
-  layers::Affine2 reflection_from_screen;  ///< where it lies; the default: texel on pixel of the display
+  /// A part looks up the first that names it. Used by Full and Reflection.
+  std::span<const Reflection> reflections;
+  /// Likewise. Used by Full and Base.
+  std::span<const TextureBlend> texture_blends;
+  /// The half-space of the world that is drawn; the rest is cut off, in the middle of triangles. Empty:
+  /// everything, at no cost.
+  std::optional<HalfSpace> kept;
 };
 
 struct RenderResult {

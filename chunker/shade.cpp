@@ -41,15 +41,14 @@ void choose_second_texture(const Pyramid* pyramid, bool has_uvs, float blend1, f
 }
 
 void choose_textures(const PreparedScene& prepared, const layers::Material& material, bool has_uvs,
-                     ShadeTerm term, Shader& shader) {
+                     ShadeTerm term, layers::vec2 blend, Shader& shader) {
   const bool whole = term == ShadeTerm::Full || term == ShadeTerm::Base;
   const Pyramid* second = pyramid_of(prepared, material.texture2);
   choose_texture(pyramid_of(prepared, material.texture), has_uvs, whole || term == ShadeTerm::Texture1,
                  shader);
   if (second == nullptr) return;
   if (whole)
-    choose_second_texture(second, has_uvs, clamp_unit(material.texture_blend.x),
-                          clamp_unit(material.texture_blend.y), shader);
+    choose_second_texture(second, has_uvs, clamp_unit(blend.x), clamp_unit(blend.y), shader);
   else if (term == ShadeTerm::Texture2)
     choose_second_texture(second, has_uvs, 0, 1, shader);
 }
@@ -184,8 +183,7 @@ Float4 decoded(const Sprite& sprite, int x, int y) {
 }  // namespace
 
 Shader make_shader(const PreparedScene& prepared, const layers::Part& part, const LightSet& lights,
-                   const RenderOptions& options, const ShadeInputs& inputs,
-                   const ReflectionLookup* reflection) {
+                   const RenderOptions& options, const ShadeInputs& inputs, const PartInputs& own) {
   const layers::Scene& scene = prepared.scene();
   static const layers::Material plain;
   const layers::Material& material = part.material >= 0 ? scene.materials[part.material] : plain;
@@ -197,8 +195,9 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
   shader.max_anisotropy = shader.mipmaps ? options.max_anisotropy : 1;
   shader.opacity = clamp_unit(material.opacity);
   shader.opaque = shader.opacity == 1;
-  choose_textures(prepared, material, !mesh.uvs.empty(), inputs.term, shader);
-  choose_reflection(material, inputs.term, reflection, shader);
+  choose_textures(prepared, material, !mesh.uvs.empty(), inputs.term,
+                  own.texture_blend.value_or(material.texture_blend), shader);
+  choose_reflection(material, inputs.term, own.reflection, shader);
   const bool shown = contributes(shader, material, inputs.term);
   const bool colored = shown && inputs.term != ShadeTerm::Shadow && inputs.term != ShadeTerm::Specular &&
                        inputs.term != ShadeTerm::Reflection;

@@ -36,6 +36,7 @@
 /// Flat shading evaluates the formula once per triangle, Gouraud once per vertex, Phong once per pixel.
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "chunker/float4.h"
@@ -130,11 +131,16 @@ struct Shader {
   bool extended() const { return shadowed || reflection != nullptr; }
 };
 
+/// What of the inputs belongs to one part.
+struct PartInputs {
+  const ReflectionLookup* reflection = nullptr;  ///< null: none
+  std::optional<layers::vec2> texture_blend;     ///< empty: that of the material
+};
+
 /// The shader of what `inputs.term` shows of a part. A part that does not contribute to the term gets a black
 /// one that only hides what is behind it.
 Shader make_shader(const PreparedScene& prepared, const layers::Part& part, const LightSet& lights,
-                   const RenderOptions& options, const ShadeInputs& inputs = {},
-                   const ReflectionLookup* reflection = nullptr);
+                   const RenderOptions& options, const ShadeInputs& inputs = {}, const PartInputs& own = {});
 
 struct Lighting {
   Float4 diffuse;

@@ -51,6 +51,23 @@ bool finite(const Affine2& m) {
          std::isfinite(m.tx) && std::isfinite(m.ty);
 }
 
+/// The half-space of the world as one of sprite points; empty where there is none.
+std::optional<HalfSpace> of_sprite_points(const HalfSpace& world, const Rows34& sprite_from_world) {
+  dmat3 linear;
+  dvec3 shift;
+  for (int r = 0; r < 3; ++r) {
+    const dvec4& row = sprite_from_world.row[r];
+    for (int c = 0; c < 3; ++c) linear[c][r] = row[c];
+    shift[r] = row.w;
+  }
+  HalfSpace kept;
+  kept.normal = glm::transpose(glm::inverse(linear)) * world.normal;
+  kept.offset = world.offset + glm::dot(kept.normal, shift);
+  const double length = glm::length(kept.normal);
+  if (!(length > 0 && std::isfinite(length) && std::isfinite(kept.offset))) return std::nullopt;
+  return kept;
+}
+
 /// Nearest integer, halves up, without a library call; |v| < 2³¹.
 std::int32_t snap(double texels) {
   const double v = texels * kSubpixel + 0.5;
@@ -72,7 +89,8 @@ Rows34 operator*(const Rows34& outer, const dmat4& inner) {
 }
 
 std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, ivec2 display_px,
-                                      const layers::SpritePlacement& placement) {
+                                      const layers::SpritePlacement& placement,
+                                      const std::optional<HalfSpace>& kept) {
   if (placement.empty() || !finite(placement.screen_from_sprite)) return std::nullopt;
   const auto sprite_from_screen = layers::inverse(placement.screen_from_sprite);
   if (!sprite_from_screen || !finite(*sprite_from_screen)) return std::nullopt;
@@ -81,6 +99,7 @@ std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, ivec2 dis
   view.sprite_from_world =
       sprite_from_clip(display_px, *sprite_from_screen) * layers::clip_from_world(frame.camera, display_px);
   view.region.near_w = std::max(frame.camera.near_m, kSmallestNear);
+  if (kept) view.region.kept = of_sprite_points(*kept, view.sprite_from_world);
   view.region.center_px = {placement.size_px.x * 0.5, placement.size_px.y * 0.5};
   view.eye = dvec3(frame.camera.world_from_camera[3]);
   view.mirrored = (placement.screen_from_sprite.determinant() < 0) !=
@@ -99,6 +118,7 @@ ProjectedVertex project(const SpriteView& view, const dvec3& p) {
       (p.x < 0 ? kLeftOfSprite : 0) | (p.x > view.size_px.x * w ? kRightOfSprite : 0) |
       (p.y < 0 ? kAboveSprite : 0) | (p.y > view.size_px.y * w ? kBelowSprite : 0) |
       (w < view.region.near_w ? kBeforeNear : 0));
+  if (view.region.kept && view.region.kept->height(p) < 0) v.flags |= kCutAway;
   if (v.flags & kBeforeNear) return v;
   const double r = 1 / w, x = p.x * r, y = p.y * r;
   v.depth = static_cast<float>(r);
@@ -123,6 +143,7 @@ ProjectedVertex project_cut(const SpriteView& view, dvec3 p) {
     v.y = snap(std::clamp(p.y / p.z, lo.y, hi.y));
     v.flags = static_cast<std::uint8_t>(v.flags & ~kOutsideGuard);
   }
+  v.flags = static_cast<std::uint8_t>(v.flags & ~kCutAway);  // it was cut there
   if (v.flags & kClipFlags) v.flags = kNotFinite;
   return v;
 }

@@ -39,11 +39,13 @@ struct SpriteView {
   bool mirrored = false;  ///< the placement, or else the camera, turns the picture over
 };
 
-/// Empty when the placement is: no texels, or a map that is singular or not finite.
+/// Empty when the placement is: no texels, or a map that is singular or not finite. `kept`: the half-space of
+/// the world that is drawn; one that is not finite or has no direction cuts nothing.
 std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, layers::ivec2 display_px,
-                                      const layers::SpritePlacement& placement);
+                                      const layers::SpritePlacement& placement,
+                                      const std::optional<HalfSpace>& kept = std::nullopt);
 
-/// Why a vertex may need more than drawing. A triangle whose corners share one of the first five lies wholly
+/// Why a vertex may need more than drawing. A triangle whose corners share one of kOutsideFlags lies wholly
 /// outside.
 enum VertexFlag : std::uint8_t {
   kLeftOfSprite = 1,
@@ -53,10 +55,11 @@ enum VertexFlag : std::uint8_t {
   kBeforeNear = 16,
   kOutsideGuard = 32,
   kNotFinite = 64,
+  kCutAway = 128,  ///< beyond ClipRegion::kept
 };
 inline constexpr std::uint8_t kOutsideFlags =
-    kLeftOfSprite | kRightOfSprite | kAboveSprite | kBelowSprite | kBeforeNear;
-inline constexpr std::uint8_t kClipFlags = kBeforeNear | kOutsideGuard;
+    kLeftOfSprite | kRightOfSprite | kAboveSprite | kBelowSprite | kBeforeNear | kCutAway;
+inline constexpr std::uint8_t kClipFlags = kBeforeNear | kOutsideGuard | kCutAway;
 
 struct ProjectedVertex {
   std::int32_t x = 0, y = 0;  ///< 1/256 texel; valid without kClipFlags and kNotFinite

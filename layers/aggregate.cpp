@@ -40,7 +40,7 @@ void hold_terms_of(const Layer& member, Layer& aggregate) {
       holds.second_texture || member.holds.second_texture || member.factored.second_texture;
   join(aggregate.casters, member.casters);
   if (!member.holds.reflection || holds.reflection)
-    return;  // one sprite looks one reflection up: the first member's
+    return;  // several mirrors are all shown, but what one state follows is one reflection: the first's
   holds.reflection = true;
   aggregate.plane = member.plane;
   aggregate.reflected = member.reflected;

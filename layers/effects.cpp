@@ -106,9 +106,8 @@ std::string call_of(const Context& context, const Layer& layer, Effect effect) {
     case Effect::VisibilitySort:
       return call_of_visibility_sort(context.layers, layer);
     case Effect::ColorWarp:
-      return layer.base < 0 && context.run.follows_light
-                 ? light_change_of(scene, layer, context.carriers).why
-                 : "";
+      return layer.base < 0 && context.run.follows_light ? light_change_of(scene, layer, context.carriers).why
+                                                         : "";
     case Effect::MipFilter:
       if (!context.run.mip_filter) return {};
       break;
@@ -187,8 +186,7 @@ std::string why_no_shade_layer(const Scene& scene, std::span<const Layer> layers
   }
 }
 
-std::string why_not(const Scene& scene, std::span<const Layer> layers, const RunEffects& run,
-                    Effect effect) {
+std::string why_not(const Scene& scene, std::span<const Layer> layers, const RunEffects& run, Effect effect) {
   switch (effect) {
     case Effect::MipFilter:
       if (!run.mip_filter) return "the run does not ask for it";

@@ -12,6 +12,7 @@
 #include "sequences/image_io.h"
 #include "sequences/page.h"
 #include "sequences/plot.h"
+#include "sequences/renderer_command.h"
 #include "sequences/solver_measure.h"
 
 namespace talisman::sequences {
@@ -220,15 +221,20 @@ void write_results(const std::vector<Rung>& rungs, const std::string& dir) {
 }  // namespace
 
 int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
-  const bool regulator = !options.regulator.sequence.empty(), factoring = !options.factoring.empty();
-  const int experiments = options.solvers + regulator + factoring;
+  const bool regulator = !options.regulator.sequence.empty(), renderer = !options.renderer.empty(),
+             factoring = !options.factoring.empty();
+  const int experiments = options.solvers + regulator + renderer + factoring;
   if (experiments != 1)
     throw InputError(
         "accuracy: " + std::string(experiments == 0 ? "nothing to measure" : "more than one experiment") +
-        ", rule: one of --solvers, --regulator SEQUENCE, --factoring SEQUENCE");
+        ", rule: one of --solvers, --regulator SEQUENCE, --renderer SEQUENCE, --factoring SEQUENCE");
   RegulatorCommandOptions asked = options.regulator;
   asked.progress = options.progress;
   if (regulator) return run_regulator_accuracy(asked, options.out, out);
+  if (renderer) {
+    asked.sequence = options.renderer;
+    return run_renderer_accuracy(asked, options.out, out);
+  }
   if (factoring) {
     asked.sequence = options.factoring;
     return run_factoring_accuracy(asked, options.out, out);

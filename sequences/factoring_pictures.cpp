@@ -114,15 +114,16 @@ Image8 factoring_sheet(const FactoringReport& report) {
   const double full = full_scale(worst), fine = full / kDifferenceZoom;
   const Image8 truth = to_image8(frame_of_truth(worst.prediction)), shown = to_image8(worst.factored);
   constexpr int kEnlarged = 12;
-  const std::string number = std::to_string(worst.frame);
-  return sheet_of(
-      {{"UNFACTORED, FRAME " + number, truth},
-       {"FACTORED: OVER ALONE", shown},
-       {"UNFACTORED, FACTORED, X" + std::to_string(kEnlarged), enlarged(worst, truth, shown, kEnlarged)},
-       {"MEASURED ERROR" + amplification(full), error_map(worst, ErrorMap::Measured, full)},
-       {"PREDICTED ERROR" + amplification(full), error_map(worst, ErrorMap::Predicted, full)},
-       {"MEASURED - PREDICTED" + amplification(fine), error_map(worst, ErrorMap::Difference, fine)}},
-      3);
+  const auto map = [&](ErrorMap kind, double scale) { return error_map(worst, kind, scale); };
+  const std::vector<SheetColumn> columns{
+      {{"above: unfactored", "below: measured error" + amplification(full)},
+       {truth, map(ErrorMap::Measured, full)}},
+      {{"above: factored, over alone", "below: predicted error" + amplification(full)},
+       {shown, map(ErrorMap::Predicted, full)}},
+      {{"above: both at the largest error X" + std::to_string(kEnlarged),
+        "below: measured - predicted" + amplification(fine)},
+       {enlarged(worst, truth, shown, kEnlarged), map(ErrorMap::Difference, fine)}}};
+  return sheet_of({report.sequence + ", frame " + std::to_string(worst.frame)}, columns, 1);
 }
 
 Plot prediction_plot(const FactoringReport& report) {

@@ -9,6 +9,7 @@
 
 #include "sequences/factoring_report.h"
 #include "sequences/image_drawing.h"
+#include "sequences/picture_sheet.h"
 #include "sequences/plot.h"
 
 namespace talisman::sequences {

@@ -12,9 +12,7 @@ namespace {
 
 using layers::ivec2;
 
-constexpr int kGap = 8;           ///< between pictures and around them
-constexpr int kLabelHeight = 20;  ///< above each picture
-constexpr Rgb kPaper{28, 30, 36}, kInk{235, 235, 235};
+constexpr Rgb kPaper{28, 30, 36};  ///< where a magnified picture has no pixels
 
 std::size_t offset_of(const Image8& image, int x, int y) {
   return 3 * (static_cast<std::size_t>(y) * image.width + x);
@@ -63,22 +61,6 @@ Image8 magnified(const Image8& image, ivec2 center, ivec2 size_px, int scale) {
         set_pixel(part, x, y, image.rgb.data() + offset_of(image, from.x, from.y));
     }
   return part;
-}
-
-Image8 sheet_of(const std::vector<LabelledPicture>& pictures, int columns) {
-  TALISMAN_CHECK(!pictures.empty() && columns >= 1);
-  const int width = pictures[0].picture.width, height = pictures[0].picture.height;
-  const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
-  Image8 sheet =
-      plain_image(columns * (width + kGap) + kGap, rows * (height + kLabelHeight + kGap) + kGap, kPaper);
-  for (std::size_t i = 0; i < pictures.size(); ++i) {
-    const int column = static_cast<int>(i) % columns, row = static_cast<int>(i) / columns;
-    const ivec2 at{kGap + column * (width + kGap), kGap + row * (height + kLabelHeight + kGap)};
-    const bool fits = static_cast<int>(pictures[i].label.size()) * kGlyphAdvance * 2 <= width;
-    draw_text(sheet, pictures[i].label, {at.x, at.y + (fits ? 2 : 6)}, kInk, fits ? 2 : 1);
-    paste(sheet, pictures[i].picture, {at.x, at.y + kLabelHeight});
-  }
-  return sheet;
 }
 
 Rgb signed_color(double share) {

@@ -6,7 +6,6 @@
 #include <array>
 #include <cstdint>
 #include <string>
-#include <vector>
 
 #include "layers/geometry2.h"
 #include "sequences/image_io.h"
@@ -27,14 +26,6 @@ void paste(Image8& image, const Image8& picture, layers::ivec2 at);
 /// The part of `image` around `center`, so that it fills `size_px` at `scale` pixels per pixel; moved inside
 /// where it would reach over the border. `scale` ≥ 1.
 Image8 magnified(const Image8& image, layers::ivec2 center, layers::ivec2 size_px, int scale);
-
-struct LabelledPicture {
-  std::string label;
-  Image8 picture;
-};
-
-/// Row by row, `columns` in each, a label above each picture. All of one size.
-Image8 sheet_of(const std::vector<LabelledPicture>& pictures, int columns);
 
 /// A signed quantity as a colour: white at 0, to red at +1 and to blue at -1, clamped.
 Rgb signed_color(double share);

@@ -321,8 +321,7 @@ bool is_drawn_with(const layers::EffectCall& effect, const layers::Layer& layer)
 layers::RunEffects run_effects(const Settings& settings) {
   layers::RunEffects run;
   if (settings.compression) run.compression_quality = settings.compression->quality;
-  run.mip_filter =
-      settings.render.mipmaps && settings.render.filter == chunker::TextureFilter::Trilinear;
+  run.mip_filter = settings.render.mipmaps && settings.render.filter == chunker::TextureFilter::Trilinear;
   run.follows_light = regulator::asks_for_light(settings.regulator);
   return run;
 }
@@ -336,8 +335,7 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   if (settings.compositor == Compositor::Extended) summary.compositor = "extended";
   summary.display_px = settings.view.display_px;
   if (settings.compression) summary.compression_quality = settings.compression->quality;
-  summary.effects =
-      layers::effects_called_for(pipeline.scene, pipeline.layers.layers, run_effects(settings));
+  summary.effects = layers::effects_called_for(pipeline.scene, pipeline.layers.layers, run_effects(settings));
   summary.effect_passes.assign(summary.effects.size(), 0);
   for (const layers::Layer& layer : pipeline.layers.layers) summary.layers.push_back(row_of(layer));
   return summary;

@@ -52,6 +52,14 @@ std::int64_t casting_polygons(const Pipeline& pipeline) {
   return polygons;
 }
 
+/// The lights that have maps: all, or `only` that one if it has.
+std::vector<int> lights_with_maps(const Pipeline& pipeline, int only) {
+  std::vector<int> lights;
+  for (int i = 0; i < static_cast<int>(pipeline.scene.lights.size()); ++i)
+    if (pipeline.scene.lights[i].casts_shadow && (only < 0 || only == i)) lights.push_back(i);
+  return lights;
+}
+
 /// Pointers to the maps of `lights`, by index of Scene::lights.
 std::vector<const chunker::ShadowMap*> maps_for(const Pipeline& pipeline, ShadowMapStore& maps,
                                                 const SceneFrame& frame, const std::vector<int>& lights) {
@@ -76,7 +84,8 @@ WorldPlane mirror_of(const SceneFrame& frame, const Layer& layer) {
   return {dvec3(world * dvec4(layer.plane->point, 1)), normal / glm::length(normal)};
 }
 
-/// The parts of the mirrored layers that reach before the mirror, on the eye's side.
+/// The parts of the mirrored layers that reach before the mirror, on the eye's side: the others need not even
+/// be cut off.
 std::vector<int> parts_before(const Pipeline& pipeline, const SceneFrame& frame, const Layer& layer,
                               const WorldPlane& mirror) {
   const double eye = mirror.height(dvec3(frame.camera.world_from_camera[3]));
@@ -110,7 +119,7 @@ SpritePlacement around(const SpritePlacement& sprite, int max_sprite_px) {
 /// A picture of what `layer` mirrors, with the map that finds it.
 struct Mirrored {
   chunker::RenderResult picture;
-  Affine2 reflection_from_screen;
+  Affine2 picture_from_screen;
 };
 
 Mirrored draw_mirrored(const Pipeline& pipeline, ShadowMapStore& maps, const chunker::PreparedScene& prepared,
@@ -119,59 +128,135 @@ Mirrored draw_mirrored(const Pipeline& pipeline, ShadowMapStore& maps, const chu
   const WorldPlane mirror = mirror_of(frame, layer);
   if (placement.empty() || !std::isfinite(mirror.height({0, 0, 0}))) return mirrored;
   const SpritePlacement wide = around(placement, pipeline.settings.placement.max_sprite_px);
-  const std::optional<Affine2> reflection_from_screen = inverse(wide.screen_from_sprite);
-  if (!reflection_from_screen) return mirrored;
+  const std::optional<Affine2> picture_from_screen = inverse(wide.screen_from_sprite);
+  if (!picture_from_screen) return mirrored;
   ShadeInputs inputs;
   const auto by_light = maps_for(pipeline, maps, frame,
-                                 any_shadows(pipeline) ? shadow_lights(pipeline, layer) : std::vector<int>{});
+                                 any_shadows(pipeline) ? lights_with_maps(pipeline, -1) : std::vector<int>{});
   inputs.shadow_maps = by_light;
+  inputs.kept = chunker::before_mirror(frame, mirror.point, mirror.normal);
   mirrored.picture =
       chunker::render(prepared, chunker::mirrored_frame(frame, mirror.point, mirror.normal),
                       parts_before(pipeline, frame, layer, mirror), pipeline.settings.view.display_px, wide,
                       pipeline.settings.render, inputs);
-  mirrored.reflection_from_screen = *reflection_from_screen;
+  mirrored.picture_from_screen = *picture_from_screen;
   return mirrored;
 }
 
-/// What drawing `layer` looks up, kept as long as it is drawn.
+// --- What a sprite holds ---
+
+/// Parts, and what their terms look up.
+struct Contents {
+  std::vector<int> parts;
+  ShadeTerm term = ShadeTerm::Full;
+  int light = -1;
+  bool shadows = false;
+  std::vector<const Layer*> mirrors;
+  std::vector<chunker::TextureBlend> blends;
+};
+
+/// `visit(shade layer)` for those of the geometry layer `base`, which follow it.
+template <typename Visit>
+void for_each_shade(const Pipeline& pipeline, int base, const Visit& visit) {
+  const std::vector<Layer>& all = pipeline.layers.layers;
+  for (std::size_t k = base + 1; k < all.size() && all[k].base == base; ++k) visit(all[k]);
+}
+
+/// `visit(layer)` for all layers whose terms the sprite of `layer` holds: itself, or an aggregate's members
+/// and their shade layers.
+template <typename Visit>
+void for_each_held(const Pipeline& pipeline, const Layer& layer, const Visit& visit) {
+  if (!layer.is_aggregate()) visit(layer);
+  for (const int member : layer.members) {
+    visit(pipeline.layers.layers[member]);
+    for_each_shade(pipeline, member, visit);
+  }
+}
+
+std::vector<const Layer*> mirrors_in(const Pipeline& pipeline, const Layer& layer) {
+  std::vector<const Layer*> mirrors;
+  for_each_held(pipeline, layer, [&](const Layer& held) {
+    if (held.holds.reflection) mirrors.push_back(&held);
+  });
+  return mirrors;
+}
+
+/// The factors with which the compositor blends the textures of `base` at a time, if it does.
+void add_blend(const Pipeline& pipeline, const Layer& base, double time_s, Contents& contents) {
+  for_each_shade(pipeline, base.id, [&](const Layer& shade) {
+    if (shade.kind != LayerKind::Texture) return;
+    const float first = multipliers_at(base, time_s).color.x, second = multipliers_at(shade, time_s).color.x;
+    contents.blends.push_back({{first, second}, base.parts});
+  });
+}
+
+/// All terms of some geometry layers together.
+Contents all_terms_of(const Pipeline& pipeline, std::span<const int> geometry_layers, double time_s) {
+  Contents contents;
+  const auto hold = [&](const Layer& layer) {
+    contents.shadows = contents.shadows || layer.holds.shadows;
+    if (layer.holds.reflection) contents.mirrors.push_back(&layer);
+  };
+  for (const int id : geometry_layers) {
+    const Layer& layer = pipeline.layers.layers[id];
+    contents.parts.insert(contents.parts.end(), layer.parts.begin(), layer.parts.end());
+    hold(layer);
+    for_each_shade(pipeline, id, hold);
+    add_blend(pipeline, layer, time_s, contents);
+  }
+  return contents;
+}
+
+Contents contents_of(const Pipeline& pipeline, const Layer& layer, double time_s) {
+  if (layer.is_aggregate()) {
+    Contents contents = all_terms_of(pipeline, layer.members, time_s);
+    contents.parts = layer.parts;  // in their own order
+    return contents;
+  }
+  return {layer.parts, term_of(layer), layer.light, layer.holds.shadows, mirrors_in(pipeline, layer), {}};
+}
+
+/// What drawing `contents` looks up, kept as long as it is drawn.
 class LookedUp {
  public:
   LookedUp(const Pipeline& pipeline, ShadowMapStore& maps, const chunker::PreparedScene& prepared,
-           const SceneFrame& frame, const Layer& layer, const SpritePlacement& placement) {
-    if (layer.holds.shadows) by_light_ = maps_for(pipeline, maps, frame, shadow_lights(pipeline, layer));
-    inputs_.light = layer.light;
+           const SceneFrame& frame, const Contents& contents, const SpritePlacement& placement) {
+    inputs_.term = contents.term;
+    inputs_.light = contents.light;
+    inputs_.texture_blends = contents.blends;
+    if (contents.shadows)
+      by_light_ = maps_for(pipeline, maps, frame, lights_with_maps(pipeline, contents.light));
     inputs_.shadow_maps = by_light_;
-    if (!layer.holds.reflection) return;
-    mirrored_ = draw_mirrored(pipeline, maps, prepared, frame, layer, placement);
-    inputs_.reflection = &mirrored_.picture.sprite;
-    inputs_.reflection_from_screen = mirrored_.reflection_from_screen;
+    for (const Layer* mirror : contents.mirrors)
+      mirrored_.push_back(draw_mirrored(pipeline, maps, prepared, frame, *mirror, placement));
+    for (std::size_t i = 0; i < mirrored_.size(); ++i)
+      reflections_.push_back(
+          {&mirrored_[i].picture.sprite, mirrored_[i].picture_from_screen, contents.mirrors[i]->parts});
+    inputs_.reflections = reflections_;
   }
   LookedUp(const LookedUp&) = delete;
   LookedUp& operator=(const LookedUp&) = delete;
 
-  ShadeInputs inputs(ShadeTerm term) const {
-    ShadeInputs inputs = inputs_;
-    inputs.term = term;
-    return inputs;
+  const ShadeInputs& inputs() const { return inputs_; }
+  void add_passes(chunker::RenderCounters& counters) const {
+    for (const Mirrored& m : mirrored_) counters += m.picture.counters;
   }
-  /// Of the passes behind it.
-  const chunker::RenderCounters& counters() const { return mirrored_.picture.counters; }
 
  private:
   std::vector<const chunker::ShadowMap*> by_light_;
-  Mirrored mirrored_;
+  std::vector<Mirrored> mirrored_;
+  std::vector<chunker::Reflection> reflections_;
   ShadeInputs inputs_;
 };
 
-/// Draws `parts` as one term, with whatever `layer` holds.
-chunker::RenderResult draw_term(const Pipeline& pipeline, ShadowMapStore& maps,
-                                const chunker::PreparedScene& prepared, const SceneFrame& frame,
-                                std::span<const int> parts, const Layer& layer, ShadeTerm term,
-                                const SpritePlacement& placement) {
-  const LookedUp looked_up(pipeline, maps, prepared, frame, layer, placement);
-  chunker::RenderResult result = chunker::render(prepared, frame, parts, pipeline.settings.view.display_px,
-                                                 placement, pipeline.settings.render, looked_up.inputs(term));
-  result.counters += looked_up.counters();
+chunker::RenderResult draw(const Pipeline& pipeline, ShadowMapStore& maps,
+                           const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                           const Contents& contents, const SpritePlacement& placement) {
+  const LookedUp looked_up(pipeline, maps, prepared, frame, contents, placement);
+  chunker::RenderResult result =
+      chunker::render(prepared, frame, contents.parts, pipeline.settings.view.display_px, placement,
+                      pipeline.settings.render, looked_up.inputs());
+  looked_up.add_passes(result.counters);
   return result;
 }
 
@@ -188,12 +273,8 @@ std::vector<ShadowMapKey> shadow_map_keys(const Pipeline& pipeline, const SceneF
 }
 
 std::vector<int> shadow_lights(const Pipeline& pipeline, const Layer& layer) {
-  std::vector<int> lights;
   const bool looks_up = layer.holds.shadows || (layer.holds.reflection && any_shadows(pipeline));
-  for (std::size_t i = 0; looks_up && i < pipeline.scene.lights.size(); ++i)
-    if (pipeline.scene.lights[i].casts_shadow && (layer.light < 0 || layer.light == static_cast<int>(i)))
-      lights.push_back(static_cast<int>(i));
-  return lights;
+  return looks_up ? lights_with_maps(pipeline, layer.light) : std::vector<int>{};
 }
 
 ShadeCounters& ShadeCounters::operator+=(const ShadeCounters& o) {
@@ -206,7 +287,7 @@ ShadeCounters& ShadeCounters::operator+=(const ShadeCounters& o) {
 
 void ShadePlan::add_render(const Pipeline& pipeline, const Layer& layer,
                            const std::vector<ShadowMapKey>& keys, ShadeCounters& counters) {
-  counters.reflections_drawn += layer.holds.reflection;
+  counters.reflections_drawn += static_cast<int>(mirrors_in(pipeline, layer).size());
   for (const int light : shadow_lights(pipeline, layer)) {
     drawn_.resize(keys.size());
     if (!drawn_[light].world_from_casters.empty() && drawn_[light] == keys[light]) {
@@ -240,40 +321,34 @@ std::int64_t ShadowMapStore::bytes() const {
 chunker::RenderResult draw_layer(const Pipeline& pipeline, ShadowMapStore& maps,
                                  const chunker::PreparedScene& prepared, const SceneFrame& frame,
                                  const Layer& layer, const SpritePlacement& placement) {
-  return draw_term(pipeline, maps, prepared, frame, layer.parts, layer, term_of(layer), placement);
+  return draw(pipeline, maps, prepared, frame, contents_of(pipeline, layer, frame.time_s), placement);
 }
 
 chunker::LinearImage draw_layer_linear(const Pipeline& pipeline, ShadowMapStore& maps,
                                        const chunker::PreparedScene& prepared, const SceneFrame& frame,
                                        const Layer& layer, const SpritePlacement& placement) {
-  const LookedUp looked_up(pipeline, maps, prepared, frame, layer, placement);
-  return chunker::render_linear(prepared, frame, layer.parts, pipeline.settings.view.display_px, placement,
-                                pipeline.settings.render, looked_up.inputs(term_of(layer)));
+  const Contents contents = contents_of(pipeline, layer, frame.time_s);
+  const LookedUp looked_up(pipeline, maps, prepared, frame, contents, placement);
+  return chunker::render_linear(prepared, frame, contents.parts, pipeline.settings.view.display_px, placement,
+                                pipeline.settings.render, looked_up.inputs());
 }
 
 std::vector<chunker::TermImage> draw_terms(const Pipeline& pipeline, ShadowMapStore& maps,
                                            const chunker::PreparedScene& prepared, const SceneFrame& frame,
                                            const Layer& layer, const SpritePlacement& placement,
                                            chunker::BasePasses base) {
-  const LookedUp looked_up(pipeline, maps, prepared, frame, layer, placement);
-  return chunker::render_terms(prepared, frame, layer.parts, pipeline.settings.view.display_px, placement,
-                               pipeline.settings.render, looked_up.inputs(ShadeTerm::Base), base);
+  const Contents contents = contents_of(pipeline, layer, frame.time_s);
+  const LookedUp looked_up(pipeline, maps, prepared, frame, contents, placement);
+  return chunker::render_terms(prepared, frame, contents.parts, pipeline.settings.view.display_px, placement,
+                               pipeline.settings.render, looked_up.inputs(), base);
 }
 
-chunker::RenderResult draw_all_in_one_pass(const Pipeline& pipeline, ShadowMapStore& maps,
-                                           const chunker::PreparedScene& prepared, const SceneFrame& frame,
-                                           const SpritePlacement& placement) {
-  Layer whole;  // holds what any layer holds
-  for (const Layer& layer : pipeline.layers.layers) {
-    if (layer.is_aggregate()) continue;
-    if (layer.base < 0) whole.parts.insert(whole.parts.end(), layer.parts.begin(), layer.parts.end());
-    whole.holds.shadows = whole.holds.shadows || layer.holds.shadows;
-    if (!layer.holds.reflection || whole.holds.reflection) continue;
-    whole.holds.reflection = true;
-    whole.plane = layer.plane;
-    whole.reflected = layer.reflected;
-  }
-  return draw_term(pipeline, maps, prepared, frame, whole.parts, whole, ShadeTerm::Full, placement);
+chunker::RenderResult draw_in_one_pass(const Pipeline& pipeline, ShadowMapStore& maps,
+                                       const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                                       std::span<const int> geometry_layers,
+                                       const SpritePlacement& placement) {
+  return draw(pipeline, maps, prepared, frame, all_terms_of(pipeline, geometry_layers, frame.time_s),
+              placement);
 }
 
 SpriteMultipliers multipliers_at(const Layer& layer, double time_s) {

@@ -8,9 +8,10 @@
 ///                  layer looks it up
 ///   reflection     what the layer mirrors, as a mirrored camera sees it, as large and dense as the sprite
 ///   that
-///                  looks it up; drawn with each render of that sprite. One bounce: mirrors in a mirror do
-///                  not mirror. A layer wholly behind the mirror is left out; one that reaches through it is
-///                  mirrored whole.
+///                  looks it up; drawn with each render of that sprite. What lies behind the mirror is cut
+///                  off. A sprite of several mirrors (an aggregate, or `direct`) looks up one picture for
+///                  each. One bounce: a mirror in a mirror shows its own colour and reflects nothing. What
+///                  is mirrored is mirrored without fades.
 ///
 /// What a scene does not call for makes no pass and allocates nothing.
 
@@ -94,13 +95,12 @@ std::vector<chunker::TermImage> draw_terms(const Pipeline& pipeline, ShadowMapSt
                                            const layers::SpritePlacement& placement,
                                            chunker::BasePasses base);
 
-/// All geometry in one pass, all terms at once. Of several mirrors only the first layer's shows something:
-/// one pass looks one reflection up. Multipliers of the compositor (fade, texture blend over time) are not
-/// known here.
-chunker::RenderResult draw_all_in_one_pass(const Pipeline& pipeline, ShadowMapStore& maps,
-                                           const chunker::PreparedScene& prepared,
-                                           const layers::SceneFrame& frame,
-                                           const layers::SpritePlacement& placement);
+/// The given geometry layers in one pass, all terms of their shading at once, and their textures blended as
+/// of `frame`. Fades are left to the compositor: sequences/direct.h.
+chunker::RenderResult draw_in_one_pass(const Pipeline& pipeline, ShadowMapStore& maps,
+                                       const chunker::PreparedScene& prepared,
+                                       const layers::SceneFrame& frame, std::span<const int> geometry_layers,
+                                       const layers::SpritePlacement& placement);
 
 /// The multipliers of the layer's sprite at a time.
 struct SpriteMultipliers {

@@ -6,6 +6,7 @@
 
 #include "layers/check.h"
 #include "layers/effects.h"
+#include "sequences/direct.h"
 #include "sequences/draw_instant.h"
 #include "sequences/extended_composite.h"
 #include "sequences/layer_planning.h"
@@ -190,26 +191,14 @@ chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& 
   return model_chunk_reads(placed, pipeline.settings.view.display_px);
 }
 
-/// All parts in one pass of the renderer into one display-sized sprite: the picture without layers.
-chunker::CompositeResult draw_in_one_pass(const Pipeline& pipeline, const SceneFrame& scene_frame,
-                                          const chunker::PreparedScene& prepared, ShadowMapStore& maps,
-                                          chunker::RenderCounters& counters) {
-  SpritePlacement whole_display;
-  whole_display.size_px = pipeline.settings.view.display_px;
-  const chunker::RenderResult result =
-      draw_all_in_one_pass(pipeline, maps, prepared, scene_frame, whole_display);
-  counters += result.counters;
-  chunker::PlacedSprite placed;
-  placed.sprite = &result.sprite;
-  return chunker::composite({&placed, 1}, pipeline.settings.view.display_px, pipeline.scene.background);
-}
-
-void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
+void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
           const chunker::PreparedScene& prepared, FrameReport& report) {
   chunker::CompositeResult result;
   const Stopwatch render_watch;
   if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
-    result = draw_in_one_pass(pipeline, now, prepared, state.shadow_maps, report.render);
+    DirectPicture picture = draw_directly(authored, state.shadow_maps, prepared, now, report.frame);
+    result = std::move(picture.composite);
+    report.render += picture.render;
     report.times.render_ms = render_watch.ms();
   } else {
     if (pipeline.settings.compression) report.compression.emplace();
@@ -276,15 +265,15 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.
-  if (prepared) draw(pipeline, state, pipeline.scene.at(time_of(pipeline, frame)), *prepared, report);
+  if (prepared)
+    draw(authored, pipeline, state, pipeline.scene.at(time_of(pipeline, frame)), *prepared, report);
   return report;
 }
 
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
-  chunker::RenderCounters ignored;
   ShadowMapStore maps;
-  return draw_in_one_pass(pipeline, pipeline.scene.at(time_of(pipeline, frame)), prepared, maps, ignored)
-      .frame;
+  return draw_directly(pipeline, maps, prepared, pipeline.scene.at(time_of(pipeline, frame)), frame)
+      .composite.frame;
 }
 
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {

@@ -209,7 +209,7 @@ TEST(Reflection, AddsWhatTheMirrorShows) {
   const LinearImage with = stage.linear(stage.inputs(), exact_options()),
                     term = stage.linear(stage.inputs(ShadeTerm::Reflection), exact_options());
   ShadeInputs without = stage.inputs();
-  without.reflection = nullptr;
+  without.reflections = {};
   const LinearImage plain = stage.linear(without, exact_options());
   float most = 0;
   for (std::size_t i = 0; i < with.texels.size(); ++i) {

@@ -68,7 +68,8 @@ class Stage {
     inputs.term = term;
     inputs.light = light;
     inputs.shadow_maps = pointers_;
-    inputs.reflection = &reflection_;
+    mirror_.picture = &reflection_;
+    inputs.reflections = {&mirror_, 1};
     return inputs;
   }
 
@@ -114,6 +115,7 @@ class Stage {
   std::vector<ShadowMap> maps_;
   std::vector<const ShadowMap*> pointers_;
   Sprite reflection_;
+  Reflection mirror_;
 };
 
 inline constexpr ShadeTerm kAllTerms[] = {ShadeTerm::Full,     ShadeTerm::Base,       ShadeTerm::Shadow,

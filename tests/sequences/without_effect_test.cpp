@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/without_effect.h"
 
+#include <cmath>
+#include <map>
 #include <set>
 
+#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -199,8 +202,8 @@ TEST(WithoutEffectPairs, OfTheAuthorFollowTheirLayersToNewIds) {
       if (layer.name == name) return layer.id;
     return -1;
   };
-  variant.settings.explicit_order = variant.sequence.explicit_order = {
-      {id_of(variant, "bar"), id_of(variant, "pane")}};
+  variant.settings.explicit_order =
+      variant.sequence.explicit_order = {{id_of(variant, "bar"), id_of(variant, "pane")}};
   const Variant without = without_effect(variant, Effect::ReflectionMap);
   ASSERT_NE(id_of(without, "bar"), id_of(variant, "bar")) << "else nothing is tested";
   EXPECT_THAT(without.settings.explicit_order,
@@ -210,9 +213,13 @@ TEST(WithoutEffectPairs, OfTheAuthorFollowTheirLayersToNewIds) {
 
 TEST(WithoutEffectOfAPlainScene, WhatIsNotCalledForTakesNothing) {
   const Variant plain = tests::run_of(tests::resting_sequence(1));
-  for (const Effect effect : layers::kAllEffects)
-    if (!effect_call(plain, effect).called)
-      EXPECT_EQ(without_effect(plain, effect).sequence.scene, plain.sequence.scene) << layers::name(effect);
+  int not_called = 0;
+  for (const Effect effect : layers::kAllEffects) {
+    if (effect_call(plain, effect).called) continue;
+    ++not_called;
+    EXPECT_EQ(without_effect(plain, effect).sequence.scene, plain.sequence.scene) << layers::name(effect);
+  }
+  EXPECT_GT(not_called, 10);
 }
 
 }  // namespace

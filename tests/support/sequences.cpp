@@ -108,8 +108,8 @@ sequences::Variant every_effect(int frames) {
   room.specs[0].group = layers::OrderGroup::Background;
   room.specs[0].shading.shadows->resolution_scale = 0.5;
   room.specs[1].preferences.motion_blur = 0.5;
-  room.specs.push_back({"bar", {"bar"}});
-  room.specs.push_back({"pane", {"pane"}});
+  room.specs.push_back({"bar", {"bar"}, layers::OrderGroup::Normal, {}});
+  room.specs.push_back({"pane", {"pane"}, layers::OrderGroup::Normal, {}});
 
   sequences::Sequence sequence;
   sequence.name = "every effect";
