@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "sequences/sequence.h"
-#include "tests/support/room.h"
+#include "tests/sequences/room_show.h"
 
 namespace talisman::tests {
 
@@ -25,14 +25,6 @@ inline sequences::Sequence sequence_of(const Room& room, int frames) {
 /// where `over` cannot multiply.
 inline Room small_floor(Room room) {
   room.scene.nodes[0].local.scale = dvec3(0.12);
-  return room;
-}
-
-/// The ball flies along x, 0.5 m per second.
-inline Room with_flying_ball(Room room) {
-  layers::FlightTrack flight;
-  flight.position = {{0, 2}, {{-0.5, 1, 0}, {0.5, 1, 0}}, layers::Interpolation::Linear};
-  room.scene.tracks.push_back({1, flight});
   return room;
 }
 
