@@ -165,10 +165,10 @@ TEST(ImportModel, GltfSpotWithoutAnglesHasTheDefaultsOfTheFormat) {
 }
 
 TEST(ImportModel, SpotConesOfAnyFileAreInRange) {
-  // Wider than a half-space, no cone at all, the inner one outside the outer: what scenes do not allow.
+  // Wider than a half-space, no cone at all, less than none: what scenes do not allow.
   for (const char* spot :
        {R"({"innerConeAngle":0.1,"outerConeAngle":3})", R"({"innerConeAngle":0,"outerConeAngle":0})",
-        R"({"innerConeAngle":0.9,"outerConeAngle":0.3})", R"({"innerConeAngle":-1,"outerConeAngle":0.3})"}) {
+        R"({"innerConeAngle":-1,"outerConeAngle":0.3})"}) {
     const TemporaryFolder folder;
     const ImportedModel model = import_model(folder.write("spot.gltf", spot_gltf(spot)));
     ASSERT_EQ(model.scene.lights.size(), 1u) << spot;
@@ -178,6 +178,13 @@ TEST(ImportModel, SpotConesOfAnyFileAreInRange) {
     EXPECT_GT(lamp.outer_cone_rad, 0) << spot;
     EXPECT_LE(lamp.outer_cone_rad, std::acos(-1.0) / 2) << spot;
   }
+}
+
+TEST(ImportModel, SpotWhoseInnerConeIsTheWiderIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.write("spot.gltf", spot_gltf(R"({"innerConeAngle":0.9,"outerConeAngle":0.3})"));
+  EXPECT_THAT(message_of([&] { import_model(path); }), HasSubstr("spot.gltf: cannot be read as a model"));
 }
 
 TEST(ImportModel, ColladaSpotGivesTheWholeCone) {

@@ -159,14 +159,16 @@ TEST(Fade, InAndOutDrawsNothingAgain) {
 
 // --- Light that comes and goes
 
-/// The lamp is below the floor, which does not answer to it there, except in frames 6 to 11.
+/// The lamp is below the floor, which does not answer to it there, except in frames 6 to 11. The floor is so
+/// small that all of it is lit then: the photometric fiducial sees light at the characteristic points only.
 Room blinking() {
-  Room room = full_room();
+  Room room = tests::small_floor(full_room());
   FlightTrack lamp;
   const dvec3 on{1, 4, 1}, off{1, -4, 1};
   lamp.position = {{0, 0.25, 0.5}, {off, on, off}, Interpolation::Step};
   lamp.target = {{0}, {{0, 0, 0}}, Interpolation::Step};
   room.scene.tracks.push_back({kLampNode, lamp});
+  room.scene.lights[0].direction = {0, 0, -1};  // the way that flights look
   return room;
 }
 
@@ -178,7 +180,7 @@ TEST(HardShading, LightIsSwitchedOnAndOff) {
     EXPECT_LT(difference(shown.reports[frame].picture, reference.reports[frame].picture).mean, 0.5) << frame;
   }
   const double change = difference(reference.reports[5].picture, reference.reports[6].picture).mean;
-  EXPECT_GT(change, 5) << "the light must matter here";
+  EXPECT_GT(change, 1) << "the light must matter here";
   EXPECT_EQ(difference(reference.reports[5].picture, reference.reports[12].picture).max, 0);
   expect_sound(blinking());
 }
@@ -232,6 +234,7 @@ Room passing_by(double base_at_least, double base_at_most, double shade_at_least
   shade.max_update_rate = shade_at_most;
   room.specs[0].preferences = base;
   room.specs[0].shading.shadows = shade;
+  room.specs[1].preferences.min_update_rate = 1;  // the ball is not what this is about
   return room;
 }
 
