@@ -8,6 +8,7 @@
 #include <ostream>
 
 #include "sequences/experiment_options.h"
+#include "sequences/factoring_command.h"
 #include "sequences/image_io.h"
 #include "sequences/page.h"
 #include "sequences/plot.h"
@@ -220,18 +221,23 @@ void write_results(const std::vector<Rung>& rungs, const std::string& dir) {
 }  // namespace
 
 int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
-  const bool regulator = !options.regulator.sequence.empty(), renderer = !options.renderer.empty();
-  const int experiments = options.solvers + regulator + renderer;
+  const bool regulator = !options.regulator.sequence.empty(), renderer = !options.renderer.empty(),
+             factoring = !options.factoring.empty();
+  const int experiments = options.solvers + regulator + renderer + factoring;
   if (experiments != 1)
     throw InputError(
         "accuracy: " + std::string(experiments == 0 ? "nothing to measure" : "more than one experiment") +
-        ", rule: one of --solvers, --regulator SEQUENCE, --renderer SEQUENCE");
+        ", rule: one of --solvers, --regulator SEQUENCE, --renderer SEQUENCE, --factoring SEQUENCE");
   RegulatorCommandOptions asked = options.regulator;
   asked.progress = options.progress;
   if (regulator) return run_regulator_accuracy(asked, options.out, out);
   if (renderer) {
     asked.sequence = options.renderer;
     return run_renderer_accuracy(asked, options.out, out);
+  }
+  if (factoring) {
+    asked.sequence = options.factoring;
+    return run_factoring_accuracy(asked, options.out, out);
   }
   if (options.inputs < 1 || options.inputs > 100000)
     throw InputError("--inputs " + std::to_string(options.inputs) + ", rule: 1 … 100000");

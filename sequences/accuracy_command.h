@@ -6,6 +6,7 @@
 ///   --solvers              of a warp; below
 ///   --regulator SEQUENCE   of the whole pipeline; regulator_command.h
 ///   --renderer SEQUENCE    of every knob and every effect of the renderer; renderer_command.h
+///   --factoring SEQUENCE   of shading in sprites of its own; factoring_command.h
 ///
 /// Every rung of the ladder (solver_ladder.h) on the realistic workload with 4, 8, 14, 26 and 64 points:
 /// time, accuracy against the certified optimum, and stability (solver_measure.h). A table on stdout, and in
@@ -28,6 +29,7 @@ struct AccuracyOptions {
   bool solvers = false;               ///< exactly one of the experiments must be asked for
   RegulatorCommandOptions regulator;  ///< asked for by its sequence
   std::string renderer;               ///< sequence, empty: not asked for; the rest is that of `regulator`
+  std::string factoring;              ///< sequence, empty: not asked for; the rest is that of `regulator`
   std::string out = "out/accuracy";
   std::string progress = "auto";  ///< auto, bar, plain or none
   int inputs =

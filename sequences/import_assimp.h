@@ -19,11 +19,11 @@ ImportedModel read_with_assimp(const std::string& path);
 
 /// What the steps of one import have in common.
 struct Import {
-  Import(const aiScene& scene, std::string file, bool linear)
-      : from(scene), path(std::move(file)), linear_colors(linear) {}
+  Import(const aiScene& scene, std::string file, bool gltf)
+      : from(scene), path(std::move(file)), is_gltf(gltf) {}
   const aiScene& from;
   std::string path;
-  bool linear_colors;  ///< glTF; otherwise colours are sRGB
+  bool is_gltf;  ///< colours are linear and cones measured from the axis; otherwise sRGB, and whole cones
   ImportedModel model;
   std::map<const aiNode*, int> node_of;
   std::map<std::string, int> node_named;  ///< the first of that name

@@ -104,7 +104,7 @@ float clean(float value, float low, float high, float otherwise) {
 
 layers::vec3 to_color(const Import& import, const aiColor4D& c) {
   const layers::vec3 file(clean(c.r, 0, 100, 0), clean(c.g, 0, 100, 0), clean(c.b, 0, 100, 0));
-  if (import.linear_colors) return file;
+  if (import.is_gltf) return file;
   return {linear_from_srgb(file.x), linear_from_srgb(file.y), linear_from_srgb(file.z)};
 }
 

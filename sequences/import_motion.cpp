@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -12,6 +13,7 @@ namespace {
 
 constexpr double kDefaultTicksPerSecond = 25;  // assimp's word for "the file does not say"
 constexpr double kDefaultFov_rad = 0.9;
+constexpr double kWidestCone_rad = std::numbers::pi / 2;  ///< a half-space
 
 /// Keys in seconds with strictly increasing times; of equal times the first is kept. Keys that are no numbers
 /// are left out.
@@ -59,6 +61,21 @@ bool is_finite(const layers::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// Half the opening angle. glTF has angles from the axis, all other formats those of the whole cone; assimp
+/// hands on what the file says.
+double cone_angle_rad(const Import& import, float angle_rad) {
+  const double half = import.is_gltf ? angle_rad : angle_rad / 2.0;
+  return std::isfinite(half) ? std::clamp(half, 0.0, kWidestCone_rad) : kWidestCone_rad;
+}
+
+void import_cone(Import& import, const aiLight& from, layers::Light& to) {
+  to.outer_cone_rad = cone_angle_rad(import, from.mAngleOuterCone);
+  to.inner_cone_rad = std::min(cone_angle_rad(import, from.mAngleInnerCone), to.outer_cone_rad);
+  if (to.outer_cone_rad > 0) return;
+  import.warn("light '" + to.name + "' is a spot without an angle; it shines into a half-space");
+  to.outer_cone_rad = to.inner_cone_rad = kWidestCone_rad;
+}
+
 /// The light, or nothing when its kind cannot be kept.
 bool import_light(Import& import, const aiLight& from, layers::Light& to) {
   to.name = from.mName.C_Str();
@@ -71,8 +88,9 @@ bool import_light(Import& import, const aiLight& from, layers::Light& to) {
       to.kind = layers::Light::Kind::Directional;
       break;
     case aiLightSource_SPOT:
-      import.warn("light '" + to.name + "' is a spot; it shines as a point");
-      [[fallthrough]];
+      to.kind = layers::Light::Kind::Spot;
+      import_cone(import, from, to);
+      break;
     case aiLightSource_POINT:
       to.kind = layers::Light::Kind::Point;
       break;
@@ -84,8 +102,9 @@ bool import_light(Import& import, const aiLight& from, layers::Light& to) {
       import.warn("light '" + to.name + "' is of a kind that is not simulated");
       return false;
   }
-  if (to.kind == layers::Light::Kind::Directional && !(glm::length(to.direction) > 0))
-    to.direction = {0, 0, -1};
+  const bool has_direction =
+      to.kind == layers::Light::Kind::Directional || to.kind == layers::Light::Kind::Spot;
+  if (has_direction && !(glm::length(to.direction) > 0)) to.direction = {0, 0, -1};
   for (int k = 0; k < 3; ++k)
     if (!(to.color[k] >= 0 && std::isfinite(to.color[k]))) to.color[k] = 0;
   return is_finite(to.position) && is_finite(to.direction);

@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <span>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/layer_planning.h"
+#include "sequences/visibility_fields.h"
 
 namespace talisman::sequences {
 
@@ -14,18 +16,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-struct Counter {
-  const char* name;
-  int layers::VisibilityCounters::*field;
-};
-constexpr Counter kCounters[] = {{"queries", &layers::VisibilityCounters::queries},
-                                 {"pairs", &layers::VisibilityCounters::pairs},
-                                 {"exact_tests", &layers::VisibilityCounters::exact_tests},
-                                 {"edges", &layers::VisibilityCounters::edges},
-                                 {"swaps", &layers::VisibilityCounters::swaps},
-                                 {"components", &layers::VisibilityCounters::components},
-                                 {"merged_components", &layers::VisibilityCounters::merged_components},
-                                 {"merged_layers", &layers::VisibilityCounters::merged_layers}};
+/// The layers of every frame add up to nothing that says something.
+constexpr std::span kCounters = std::span(kVisibilityFields).subspan(1);
 
 std::vector<std::string> names_of(const Pipeline& pipeline, const std::vector<int>& ids) {
   std::vector<std::string> names;
@@ -74,7 +66,7 @@ void add_counters(OrderOverTime& result, const FrameOrder& order) {
   ++result.frames;
   result.frames_sorted += order.sorted;
   result.frames_with_cycles += order.counters.merged_components > 0 || !order.resolved.empty();
-  for (const Counter& c : kCounters) result.sum.*c.field += order.counters.*c.field;
+  for (const VisibilityField& c : kCounters) result.sum.*c.field += order.counters.*c.field;
   result.merged_parts += order.merged_parts;
   if (!order.sorted) return;
   result.sort_ms += order.sort_ms;
@@ -123,7 +115,7 @@ std::string order_text(const Sequence& sequence, const OrderOverTime& order) {
   text += line("\n  sorted in %d frames, with cycles in %d; %.3f ms a frame on average, %.3f ms at most\n  ",
                order.frames_sorted, order.frames_with_cycles,
                order.frames_sorted > 0 ? order.sort_ms / order.frames_sorted : 0, order.slowest_sort_ms);
-  for (const Counter& c : kCounters) text += line("%s %d, ", c.name, order.sum.*c.field);
+  for (const VisibilityField& c : kCounters) text += line("%s %d, ", c.name, order.sum.*c.field);
   return text + "merged_parts " + std::to_string(order.merged_parts) + " over all frames\n";
 }
 
@@ -140,7 +132,7 @@ std::string order_json(const Sequence& sequence, const OrderOverTime& order) {
   for (const MergedRun& run : order.resolved)
     resolved.push_back(
         {{"first", run.first}, {"last", run.last}, {"members", run.members}, {"expression", run.why}});
-  for (const Counter& c : kCounters) counters[c.name] = order.sum.*c.field;
+  for (const VisibilityField& c : kCounters) counters[c.name] = order.sum.*c.field;
   counters["merged_parts"] = order.merged_parts;
   const Json json = {{"schema", "talisman.order/1"},
                      {"sequence", sequence.name},

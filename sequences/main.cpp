@@ -197,15 +197,19 @@ struct Commands {
     accuracy_command->add_option("--renderer", accuracy.renderer,
                                  "SEQUENCE or MODEL: every knob and every effect of the renderer, time and "
                                  "counters against picture error");
+    accuracy_command->add_option("--factoring", accuracy.factoring,
+                                 "SEQUENCE: what it costs that the compositor has only over, predicted and "
+                                 "measured, and what factoring saves");
     accuracy_command->add_option("--inputs", accuracy.inputs, "solvers: boxes per number of points");
     accuracy_command->add_option("--frames", accuracy.regulator.frames,
-                                 "regulator, renderer: A-B, inclusive (all)");
-    accuracy_command->add_option(
-        "--size", accuracy.regulator.size,
-        "regulator, renderer: display, WxH (the sequence's, at most 512 in either direction)");
+                                 "regulator, renderer, factoring: A-B, inclusive (all)");
+    accuracy_command->add_option("--size", accuracy.regulator.size,
+                                 "regulator, renderer, factoring: display, WxH (the sequence's, at most 512 "
+                                 "in either direction)");
     accuracy_command->add_option(
         "--quality-every", accuracy.regulator.quality_every,
-        "one frame of N is drawn and compared; 0: about 20 (regulator), 2 (renderer) in all");
+        "one frame of N is drawn and compared; 0: about 20 (regulator, factoring), 2 "
+        "(renderer) in all");
     accuracy_command->add_option("--out", accuracy.out, "result folder (out/accuracy)");
     accuracy_command->add_option("--progress", accuracy.progress, "auto, bar, plain or none");
     accuracy_command->callback([this] { exit_code = run_accuracy(accuracy, std::cout); });

@@ -15,9 +15,9 @@
 ///   by
 ///              8.3-truncated name; one that is not found is a warning and a plain colour
 ///   motion     the first animation, ticks → seconds, looping
-///   lights     directional, point (spots become points), ambient; if one is brighter than 1 all are divided
-///   by the
-///              brightest, for files give candela or lux
+///   lights     directional, point, spot (angles of glTF are from the axis, those of other formats of the
+///              whole cone), ambient; if one is brighter than 1 all are divided by the brightest, for files
+///              give candela or lux
 ///   layers     the key "layer" of a glTF node's extras is kept as a LayerTag
 
 #include <cstdint>

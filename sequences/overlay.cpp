@@ -7,6 +7,7 @@
 
 #include "layers/check.h"
 #include "sequences/bitmap_font.h"
+#include "sequences/image_drawing.h"
 
 namespace talisman::sequences {
 namespace {
@@ -16,7 +17,6 @@ using layers::dvec2;
 using layers::dvec3;
 using layers::ivec2;
 using layers::RectI;
-using Rgb = std::array<std::uint8_t, 3>;
 
 constexpr double kLineWidthPx = 2;
 constexpr double kMarginPx = 2;  // lines just outside still reach in
@@ -158,9 +158,7 @@ class Labels {
     taken_.push_back(box);
     for (int y = box.y0; y < box.y1; ++y)
       for (int x = box.x0; x < box.x1; ++x) blend(image_, x, y, {12, 12, 16}, 0.75);
-    for (std::size_t i = 0; i < glyphs.size(); ++i)
-      draw_glyph(glyphs[i], {box.x0 + (static_cast<int>(i) * kGlyphAdvance + 1) * scale_, box.y0 + scale_},
-                 color);
+    draw_text(image_, text, {box.x0 + scale_, box.y0 + scale_}, color, scale_);
   }
 
  private:
@@ -179,13 +177,6 @@ class Labels {
       for (const int row : {step, -step})
         if (const RectI box = at(row); is_free(box)) return box;
     return at(0);
-  }
-
-  void draw_glyph(const Glyph& glyph, ivec2 at, Rgb color) {
-    for (int y = 0; y < kGlyphHeight * scale_; ++y)
-      for (int x = 0; x < kGlyphWidth * scale_; ++x)
-        if (glyph[y / scale_] >> (kGlyphWidth - 1 - x / scale_) & 1)
-          blend(image_, at.x + x, at.y + y, color, 1);
   }
 
   Image8& image_;

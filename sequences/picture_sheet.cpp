@@ -6,6 +6,7 @@
 
 #include "layers/check.h"
 #include "sequences/bitmap_font.h"
+#include "sequences/image_drawing.h"
 
 namespace talisman::sequences {
 namespace {
@@ -26,17 +27,6 @@ void fill(Image8& image, const Crop& where, const std::uint8_t* rgb) {
       std::copy(rgb, rgb + 3, pixel(image, x, y));
 }
 
-void draw_text(Image8& image, const std::string& text, int left, int top) {
-  constexpr std::uint8_t kInk[3] = {235, 235, 235};
-  for (const Glyph& glyph : glyphs_of(text)) {
-    for (int row = 0; row < kGlyphHeight; ++row)
-      for (int column = 0; column < kGlyphWidth; ++column)
-        if (glyph[row] >> (kGlyphWidth - 1 - column) & 1)
-          fill(image, {left + column * kTextScale, top + row * kTextScale, kTextScale, kTextScale}, kInk);
-    left += kGlyphAdvance * kTextScale;
-  }
-}
-
 int text_width(const std::vector<std::string>& lines) {
   std::size_t longest = 0;
   for (const std::string& line : lines) longest = std::max(longest, glyphs_of(line).size());
@@ -44,7 +34,8 @@ int text_width(const std::vector<std::string>& lines) {
 }
 
 int draw_lines(Image8& image, const std::vector<std::string>& lines, int left, int top) {
-  for (const std::string& line : lines) draw_text(image, line, left, top), top += kLinePx;
+  constexpr Rgb kInk{235, 235, 235};
+  for (const std::string& line : lines) draw_text(image, line, {left, top}, kInk, kTextScale), top += kLinePx;
   return top;
 }
 

@@ -23,15 +23,15 @@ ResolvedRun resolved(const Sequence& sequence, const RegulatorCommandOptions& op
   return resolve(line, sequence, true);
 }
 
-ExperimentFrames frames_of(const ResolvedRun& run, int every) {
+}  // namespace
+
+ExperimentFrames experiment_frames(const ResolvedRun& run, int every) {
   if (every < 0)
     throw InputError("--quality-every is " + std::to_string(every) + ", must be at least 0 (0: automatic)");
   const int frames = run.options.last_frame - run.options.first_frame + 1;
   if (every == 0) every = std::max(1, (frames + kDefaultSamples - 1) / kDefaultSamples);
   return {run.options.first_frame, run.options.last_frame, every};
 }
-
-}  // namespace
 
 std::string default_experiment_size(layers::ivec2 display_px) {
   const double scale = std::min(1.0, double(kLargestDefaultPx) / std::max(display_px.x, display_px.y));
@@ -47,7 +47,7 @@ RegulatorReport measure_regulator_report(const Sequence& sequence, const Regulat
   report.sequence = sequence.name;
   report.warp = warp::name(run.settings.curve);
   report.display_px = run.settings.view.display_px;
-  report.frames = frames_of(run, options.quality_every);
+  report.frames = experiment_frames(run, options.quality_every);
   for (const layers::Layer& layer : sequence.layers.layers) report.layers.push_back(layer.name);
   const double polygons = reference_polygons_per_frame(sequence, run.settings, report.frames);
   report.settings = measure_regulator(

@@ -8,6 +8,7 @@
 #include <iosfwd>
 #include <string>
 
+#include "sequences/options.h"
 #include "sequences/regulator_report.h"
 #include "sequences/sequence.h"
 
@@ -28,6 +29,10 @@ inline constexpr int kDefaultSamples = 20;
 
 /// The display made smaller in both directions until its larger side is kLargestDefaultPx, as "WxH".
 std::string default_experiment_size(layers::ivec2 display_px);
+
+/// The frames of the run, one in `every` to be drawn; 0: so that about kDefaultSamples are. Throws
+/// InputError.
+ExperimentFrames experiment_frames(const ResolvedRun& run, int every);
 
 /// All measurements. `options.sequence` is already read. Throws InputError.
 RegulatorReport measure_regulator_report(const Sequence& sequence, const RegulatorCommandOptions& options);

@@ -4,108 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <utility>
 
 #include "layers/check.h"
-#include "sequences/diff.h"
-#include "sequences/rank_correlation.h"
-#include "sequences/results.h"
 
 namespace talisman::sequences {
 namespace {
-
-Timing timing_of(const std::vector<FrameLine>& lines, double FrameLine::*field) {
-  std::vector<double> ms;
-  for (const FrameLine& line : lines) ms.push_back(line.*field);
-  if (ms.empty()) return {};
-  return {std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size()), quantile(ms, 0.5)};
-}
-
-/// One setting on its way through the frames.
-class SettingRun {
- public:
-  SettingRun(const Sequence& sequence, Settings settings, const RegulatorSetting& setting)
-      : setting_(setting),
-        pipeline_(*sequence.scene, sequence.layers, with(std::move(settings), setting)),
-        state_(pipeline_),
-        summary_(start_summary(pipeline_, sequence.name)) {}
-  SettingRun(const SettingRun&) = delete;
-  SettingRun& operator=(const SettingRun&) = delete;
-
-  /// Plans frame `frame`, and draws it where `prepared` is given.
-  void advance(int frame, const chunker::PreparedScene* prepared) {
-    layers_before_.clear();
-    for (const ShownSprite& sprite : report_.shown) layers_before_.push_back(sprite.layer);
-    report_ = step(pipeline_, state_, frame, prepared);
-    before_ = std::move(now_);
-    now_ = prepared ? to_image8(report_.picture) : Image8{};
-  }
-
-  void count() {
-    const Pipeline& pipeline = with_aggregates(pipeline_, state_);
-    add_decisions(summary_, pipeline, report_, state_);
-    summary_.frames.push_back(line_of(pipeline, report_));
-    for (const regulator::LayerDecision& decision : report_.plan.decisions) chunks_ += decision.cost.chunks;
-  }
-
-  /// The frame of the last advance was drawn, and so was the one before unless it was the first.
-  void judge(const ConsecutiveFrames& truth) {
-    drawn_.push_back(summary_.frames.back());
-    qualities_.push_back({std::to_string(report_.frame), compare(now_, truth.now)});
-    if (before_.rgb.empty()) return;
-    popping_.add(
-        {before_, now_}, truth,
-        stepping_pixels(layers_before_, report_, state_.sprites, pipeline_.settings.view.display_px));
-  }
-
-  ConsecutiveFrames pictures() const { return {before_, now_}; }
-  SettingResult result() const;
-
- private:
-  static Settings with(Settings settings, const RegulatorSetting& setting) {
-    settings.regulator = setting.options;
-    return settings;
-  }
-
-  RegulatorSetting setting_;
-  Pipeline pipeline_;
-  PipelineState state_;
-  Summary summary_;
-  FrameReport report_;
-  Image8 before_, now_;  ///< empty where not drawn
-  std::vector<int> layers_before_;
-  std::int64_t chunks_ = 0;
-  std::vector<FrameLine> drawn_;
-  std::vector<FrameDiff> qualities_;
-  PoppingMeter popping_;
-};
-
-SettingResult SettingRun::result() const {
-  SettingResult result;
-  result.setting = setting_;
-  result.mean_update_rate = summary_.mean_update_rate();
-  result.weighted_update_rate = summary_.cost_weighted_update_rate();
-  result.polygons = summary_.total(&FrameLine::polygons_rendered);
-  result.pixels = summary_.total(&FrameLine::pixels_rendered);
-  result.chunks = chunks_;
-  double error_px = 0;
-  int shown = 0;
-  for (const LayerSummary& layer : summary_.layers) {
-    result.renders += layer.renders;
-    error_px += layer.sum_geometric_px;
-    shown += layer.frames_shown;
-    result.max_geometric_px = std::max(result.max_geometric_px, layer.max_geometric_px);
-  }
-  result.mean_geometric_px = shown > 0 ? error_px / shown : 0;
-  result.plan = timing_of(summary_.frames, &FrameLine::plan_ms);
-  result.render = timing_of(drawn_, &FrameLine::render_ms);
-  result.composite = timing_of(drawn_, &FrameLine::composite_ms);
-  result.modelled_ms = timing_of(drawn_, &FrameLine::modelled_ms).mean;
-  result.quality = summarize(qualities_).mean;
-  result.popping = popping_.result();
-  return result;
-}
 
 /// How often the sampled frames have met each phase of each period of hold and interpolate.
 class Phases {

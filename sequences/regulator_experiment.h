@@ -21,12 +21,8 @@
 
 #include <vector>
 
-#include "sequences/popping.h"
 #include "sequences/progress.h"
-#include "sequences/quality.h"
-#include "sequences/regulator_settings.h"
-#include "sequences/sequence.h"
-#include "sequences/step.h"
+#include "sequences/setting_run.h"
 
 namespace talisman::sequences {
 
@@ -37,27 +33,6 @@ struct ExperimentFrames {
 
 /// The frames f that are drawn together with their predecessors, ascending; at least one.
 std::vector<int> sampled_frames(const ExperimentFrames& frames);
-
-/// Milliseconds per frame.
-struct Timing {
-  double mean = 0;    ///< what a frame costs over a run
-  double median = 0;  ///< what most frames cost; 0 ms of rendering where most frames render nothing
-};
-
-struct SettingResult {
-  RegulatorSetting setting;
-  // From the plan of all frames.
-  double mean_update_rate = 0, weighted_update_rate = 0;  ///< 0 … 1; weighted by polygons
-  std::int64_t renders = 0, polygons = 0, pixels = 0, chunks = 0;
-  double mean_geometric_px = 0, max_geometric_px = 0;  ///< of what is displayed
-  Timing plan;
-  // From the frames that are drawn.
-  Timing render, composite;
-  double modelled_ms = 0;  ///< mean, by the profile talisman-1996
-  Quality quality;         ///< mean against `reference`; PSNR of the mean squared error
-  Popping popping;
-  double frame_ms() const { return plan.mean + render.mean + composite.mean; }
-};
 
 /// Polygons of all layers in view, mean over the frames: what `reference` draws.
 double reference_polygons_per_frame(const Sequence& sequence, const Settings& settings,

@@ -9,6 +9,7 @@
 
 #include "regulator/profile.h"
 #include "sequences/compression_json.h"
+#include "sequences/visibility_fields.h"
 
 namespace talisman::sequences {
 
@@ -124,20 +125,6 @@ constexpr RealField kTimes[] = {{"plan_ms", &FrameLine::plan_ms},
                                 {"io_ms", &FrameLine::io_ms},
                                 {"modelled_ms", &FrameLine::modelled_ms}};
 
-struct SortField {
-  const char* name;
-  int layers::VisibilityCounters::*field;
-};
-constexpr SortField kSort[] = {{"layers", &layers::VisibilityCounters::layers},
-                               {"queries", &layers::VisibilityCounters::queries},
-                               {"pairs", &layers::VisibilityCounters::pairs},
-                               {"exact_tests", &layers::VisibilityCounters::exact_tests},
-                               {"edges", &layers::VisibilityCounters::edges},
-                               {"swaps", &layers::VisibilityCounters::swaps},
-                               {"components", &layers::VisibilityCounters::components},
-                               {"merged_components", &layers::VisibilityCounters::merged_components},
-                               {"merged_layers", &layers::VisibilityCounters::merged_layers}};
-
 struct ResolvedField {
   const char* name;
   int ResolvedCounters::*field;
@@ -149,7 +136,7 @@ constexpr ResolvedField kResolved[] = {{"resolved_components", &ResolvedCounters
 
 Json json_of(const VisibilityLine& line) {
   Json json = Json::object();
-  for (const SortField& f : kSort) json[f.name] = line.counters.*f.field;
+  for (const VisibilityField& f : kVisibilityFields) json[f.name] = line.counters.*f.field;
   for (const ResolvedField& f : kResolved) json[f.name] = line.resolved.*f.field;
   json["merged_parts"] = line.merged_parts;
   json["sort_ms"] = line.sort_ms;
@@ -158,7 +145,7 @@ Json json_of(const VisibilityLine& line) {
 
 VisibilityLine visibility_from(const Json& json) {
   VisibilityLine line;
-  for (const SortField& f : kSort) json.at(f.name).get_to(line.counters.*f.field);
+  for (const VisibilityField& f : kVisibilityFields) json.at(f.name).get_to(line.counters.*f.field);
   for (const ResolvedField& f : kResolved) json.at(f.name).get_to(line.resolved.*f.field);
   json.at("merged_parts").get_to(line.merged_parts);
   json.at("sort_ms").get_to(line.sort_ms);

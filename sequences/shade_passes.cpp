@@ -227,29 +227,47 @@ Contents contents_of(const Pipeline& pipeline, const Layer& layer, double time_s
       {}};
 }
 
+/// What drawing `contents` looks up, kept as long as it is drawn.
+class LookedUp {
+ public:
+  LookedUp(const Pipeline& pipeline, ShadowMapStore& maps, const chunker::PreparedScene& prepared,
+           const SceneFrame& frame, const Contents& contents, const SpritePlacement& placement) {
+    inputs_.term = contents.term;
+    inputs_.light = contents.light;
+    inputs_.texture_blends = contents.blends;
+    if (contents.shadows)
+      by_light_ = maps_for(pipeline, maps, frame, lights_with_maps(pipeline, contents.light));
+    inputs_.shadow_maps = by_light_;
+    for (const Layer* mirror : contents.mirrors)
+      mirrored_.push_back(draw_mirrored(pipeline, maps, prepared, frame, *mirror, placement));
+    for (std::size_t i = 0; i < mirrored_.size(); ++i)
+      reflections_.push_back(
+          {&mirrored_[i].picture.sprite, mirrored_[i].picture_from_screen, contents.mirrors[i]->parts});
+    inputs_.reflections = reflections_;
+  }
+  LookedUp(const LookedUp&) = delete;
+  LookedUp& operator=(const LookedUp&) = delete;
+
+  const ShadeInputs& inputs() const { return inputs_; }
+  void add_passes(chunker::RenderCounters& counters) const {
+    for (const Mirrored& m : mirrored_) counters += m.picture.counters;
+  }
+
+ private:
+  std::vector<const chunker::ShadowMap*> by_light_;
+  std::vector<Mirrored> mirrored_;
+  std::vector<chunker::Reflection> reflections_;
+  ShadeInputs inputs_;
+};
+
 chunker::RenderResult draw(const Pipeline& pipeline, ShadowMapStore& maps,
                            const chunker::PreparedScene& prepared, const SceneFrame& frame,
                            const Contents& contents, const SpritePlacement& placement) {
-  ShadeInputs inputs;
-  inputs.term = contents.term;
-  inputs.light = contents.light;
-  inputs.texture_blends = contents.blends;
-  std::vector<const chunker::ShadowMap*> by_light;
-  if (contents.shadows)
-    by_light = maps_for(pipeline, maps, frame, lights_with_maps(pipeline, contents.light));
-  inputs.shadow_maps = by_light;
-  std::vector<Mirrored> mirrored;
-  for (const Layer* mirror : contents.mirrors)
-    mirrored.push_back(draw_mirrored(pipeline, maps, prepared, frame, *mirror, placement));
-  std::vector<chunker::Reflection> reflections;
-  for (std::size_t i = 0; i < mirrored.size(); ++i)
-    reflections.push_back(
-        {&mirrored[i].picture.sprite, mirrored[i].picture_from_screen, contents.mirrors[i]->parts});
-  inputs.reflections = reflections;
+  const LookedUp looked_up(pipeline, maps, prepared, frame, contents, placement);
   chunker::RenderResult result =
       chunker::render(prepared, frame, contents.parts, pipeline.settings.view.display_px, placement,
-                      pipeline.settings.render, inputs);
-  for (const Mirrored& m : mirrored) result.counters += m.picture.counters;
+                      pipeline.settings.render, looked_up.inputs());
+  looked_up.add_passes(result.counters);
   return result;
 }
 
@@ -316,6 +334,25 @@ chunker::RenderResult draw_layer(const Pipeline& pipeline, ShadowMapStore& maps,
                                  const chunker::PreparedScene& prepared, const SceneFrame& frame,
                                  const Layer& layer, const SpritePlacement& placement) {
   return draw(pipeline, maps, prepared, frame, contents_of(pipeline, layer, frame.time_s), placement);
+}
+
+chunker::LinearImage draw_layer_linear(const Pipeline& pipeline, ShadowMapStore& maps,
+                                       const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                                       const Layer& layer, const SpritePlacement& placement) {
+  const Contents contents = contents_of(pipeline, layer, frame.time_s);
+  const LookedUp looked_up(pipeline, maps, prepared, frame, contents, placement);
+  return chunker::render_linear(prepared, frame, contents.parts, pipeline.settings.view.display_px, placement,
+                                pipeline.settings.render, looked_up.inputs());
+}
+
+std::vector<chunker::TermImage> draw_terms(const Pipeline& pipeline, ShadowMapStore& maps,
+                                           const chunker::PreparedScene& prepared, const SceneFrame& frame,
+                                           const Layer& layer, const SpritePlacement& placement,
+                                           chunker::BasePasses base) {
+  const Contents contents = contents_of(pipeline, layer, frame.time_s);
+  const LookedUp looked_up(pipeline, maps, prepared, frame, contents, placement);
+  return chunker::render_terms(prepared, frame, contents.parts, pipeline.settings.view.display_px, placement,
+                               pipeline.settings.render, looked_up.inputs(), base);
 }
 
 chunker::RenderResult draw_in_one_pass(const Pipeline& pipeline, ShadowMapStore& maps,

@@ -17,7 +17,7 @@
 
 #include <vector>
 
-#include "chunker/render.h"
+#include "chunker/multipass.h"
 #include "chunker/shadow_map.h"
 #include "layers/polyhedron.h"
 #include "layers/state.h"
@@ -81,6 +81,19 @@ class ShadowMapStore {
 chunker::RenderResult draw_layer(const Pipeline& pipeline, ShadowMapStore& maps,
                                  const chunker::PreparedScene& prepared, const layers::SceneFrame& frame,
                                  const layers::Layer& layer, const layers::SpritePlacement& placement);
+
+/// What draw_layer encodes, as it is before that.
+chunker::LinearImage draw_layer_linear(const Pipeline& pipeline, ShadowMapStore& maps,
+                                       const chunker::PreparedScene& prepared,
+                                       const layers::SceneFrame& frame, const layers::Layer& layer,
+                                       const layers::SpritePlacement& placement);
+
+/// All terms that `layer` holds, one pass each (chunker/multipass.h).
+std::vector<chunker::TermImage> draw_terms(const Pipeline& pipeline, ShadowMapStore& maps,
+                                           const chunker::PreparedScene& prepared,
+                                           const layers::SceneFrame& frame, const layers::Layer& layer,
+                                           const layers::SpritePlacement& placement,
+                                           chunker::BasePasses base);
 
 /// The given geometry layers in one pass, all terms of their shading at once, and their textures blended as
 /// of `frame`. Fades are left to the compositor: sequences/direct.h.

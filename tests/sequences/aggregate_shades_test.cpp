@@ -12,6 +12,7 @@
 #include "sequences/image_io.h"
 #include "sequences/options.h"
 #include "sequences/results.h"
+#include "tests/sequences/playback.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
@@ -21,6 +22,7 @@ using layers::Layer;
 using regulator::Action;
 using regulator::Policy;
 using ::testing::StartsWith;
+using tests::Playback;
 using tests::TemporaryFolder;
 
 /// A shiny wall at rest under a lamp, whose shadows and highlights are factored, and a ball that flies
@@ -66,22 +68,6 @@ Settings settings_of(const Sequence& sequence, Policy policy, double geometric_p
   settings.placement.min_rotation_gain = 1;
   return settings;
 }
-
-/// A run, frame by frame.
-struct Playback {
-  Playback(const Sequence& s, const Settings& settings, bool draw = false)
-      : sequence(s), pipeline(*sequence.scene, sequence.layers, settings), state(pipeline) {
-    if (draw) prepared.emplace(*sequence.scene);
-  }
-  FrameReport next() { return step(pipeline, state, frame++, prepared ? &*prepared : nullptr); }
-  const Pipeline& grown() const { return with_aggregates(pipeline, state); }
-
-  Sequence sequence;
-  Pipeline pipeline;
-  PipelineState state;
-  std::optional<chunker::PreparedScene> prepared;
-  int frame = 0;
-};
 
 bool is_merged(const FrameReport& report) { return !report.order.mergers.empty(); }
 

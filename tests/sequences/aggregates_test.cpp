@@ -11,6 +11,7 @@
 #include "sequences/layer_pairs.h"
 #include "sequences/options.h"
 #include "sequences/results.h"
+#include "tests/sequences/playback.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
@@ -21,6 +22,7 @@ using regulator::Policy;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 using tests::message_of;
+using tests::Playback;
 using tests::TemporaryFolder;
 
 /// A wall at rest, a ball that flies through it from the right to the left and back, and a bystander that
@@ -58,27 +60,6 @@ Settings settings_of(const Sequence& sequence, Policy policy = Policy::Threshold
   settings.regulator.lookahead_frames = 3;
   return settings;
 }
-
-/// A run, frame by frame.
-struct Playback {
-  Playback(const Sequence& s, const Settings& settings, bool draw = false)
-      : sequence(s), pipeline(*sequence.scene, sequence.layers, settings), state(pipeline) {
-    if (draw) prepared.emplace(*sequence.scene);
-  }
-  FrameReport next() { return step(pipeline, state, frame++, prepared ? &*prepared : nullptr); }
-  std::vector<FrameReport> all(int frames) {
-    std::vector<FrameReport> reports;
-    while (frame < frames) reports.push_back(next());
-    return reports;
-  }
-  const Pipeline& grown() const { return with_aggregates(pipeline, state); }
-
-  Sequence sequence;
-  Pipeline pipeline;
-  PipelineState state;
-  std::optional<chunker::PreparedScene> prepared;
-  int frame = 0;
-};
 
 /// Do wall and ball meet? Their bounds are boxes, and the ball flies along x.
 bool meet(const Sequence& s, int frame) {

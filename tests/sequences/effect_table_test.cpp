@@ -61,26 +61,36 @@ class EffectTable : public ::testing::Test {
   std::string missing_;
 };
 
+/// The stage, factored or not: it differs in the resolution of its layers and from the shadow layers on.
+std::vector<Row> stage_table(const Row& resolution, const std::vector<Row>& shade_layers) {
+  std::vector<Row> rows{
+      {"texture", kCalled, "material 'floor' has texture 'floor01.png'"},
+      {"mip_filter", kCalled, "material 'floor' has texture 'floor01.png'"},
+      {"lighting", kCalled, "material 'wall' is lit"},
+      {"specular_highlight", kCalled, "material 'wall' has specular > 0"},
+      {"translucency", kCalled, "material 'glass' has opacity < 1"},
+      {"skinning", kCalled, "part 'figure/$dummy_root/Wuson' has a skin"},
+      resolution,
+      {"motion_blur", kNot, "no layer has motion_blur > 0"},
+      {"sprite_compression", kNot, "the run does not ask for it"},
+      {"visibility_sort", kCalled, "layers 'wall' and 'floor' of group background can overlap"},
+      {"color_warp", kCalled, "part 'wall' and light 'spot' move against each other"},
+      {"shadow_map", kCalled, "light 'spot': drawn again when light or casters move"}};
+  rows.insert(rows.end(), shade_layers.begin(), shade_layers.end());
+  return rows;
+}
+
 TEST_F(EffectTable, OfTheStageCallsForAllShading) {
   if (!load("stage")) GTEST_SKIP() << missing_;
-  expect_table(sequence_,
-               {{"texture", kCalled, "material 'floor' has texture 'floor01.png'"},
-                {"mip_filter", kCalled, "material 'floor' has texture 'floor01.png'"},
-                {"lighting", kCalled, "material 'wall' is lit"},
-                {"specular_highlight", kCalled, "material 'wall' has specular > 0"},
-                {"translucency", kCalled, "material 'glass' has opacity < 1"},
-                {"skinning", kCalled, "part 'figure/$dummy_root/Wuson' has a skin"},
-                {"layer_resolution", kCalled, "layer 'wall/shadow of spot' has its own resolution"},
-                {"motion_blur", kNot, "no layer has motion_blur > 0"},
-                {"sprite_compression", kNot, "the run does not ask for it"},
-                {"visibility_sort", kCalled, "layers 'wall' and 'floor' of group background can overlap"},
-                {"color_warp", kCalled, "part 'wall' and light 'spot' move against each other"},
-                {"shadow_map", kCalled, "light 'spot': drawn again when light or casters move"},
-                {"shadow_layer", kCalled, "layer 'wall/shadow of spot' holds the shadows of light 'spot'"},
-                {"specular_layer", kCalled, "layer 'floor/specular' holds the highlights of its base"},
-                {"reflection_map", kCalled, "layer 'floor/reflection' mirrors 5 layers"},
-                {"reflection_layer", kCalled, "layer 'floor/reflection' holds the mirrored picture"},
-                {"texture_layers", kCalled, "layer 'floor/texture 2' holds the second texture of its base"}});
+  expect_table(
+      sequence_,
+      stage_table(
+          {"layer_resolution", kCalled, "layer 'wall/shadow of spot' has its own resolution"},
+          {{"shadow_layer", kCalled, "layer 'wall/shadow of spot' holds the shadows of light 'spot'"},
+           {"specular_layer", kCalled, "layer 'floor/specular' holds the highlights of its base"},
+           {"reflection_map", kCalled, "layer 'floor/reflection' mirrors 5 layers"},
+           {"reflection_layer", kCalled, "layer 'floor/reflection' holds the mirrored picture"},
+           {"texture_layers", kCalled, "layer 'floor/texture 2' holds the second texture of its base"}}));
   EXPECT_EQ(users_of(sequence_, layers::Effect::SpecularLayer), "floor/specular, ball/specular");
   EXPECT_EQ(users_of(sequence_, layers::Effect::TextureLayers), "floor/texture 2");
   EXPECT_EQ(users_of(sequence_, layers::Effect::Skinning), "figure");
@@ -89,24 +99,14 @@ TEST_F(EffectTable, OfTheStageCallsForAllShading) {
 
 TEST_F(EffectTable, OfTheStageUnfactoredHasNoShadeLayer) {
   if (!load("stage/unfactored")) GTEST_SKIP() << missing_;
-  expect_table(sequence_,
-               {{"texture", kCalled, "material 'floor' has texture 'floor01.png'"},
-                {"mip_filter", kCalled, "material 'floor' has texture 'floor01.png'"},
-                {"lighting", kCalled, "material 'wall' is lit"},
-                {"specular_highlight", kCalled, "material 'wall' has specular > 0"},
-                {"translucency", kCalled, "material 'glass' has opacity < 1"},
-                {"skinning", kCalled, "part 'figure/$dummy_root/Wuson' has a skin"},
-                {"layer_resolution", kNot, "every layer has the display's resolution"},
-                {"motion_blur", kNot, "no layer has motion_blur > 0"},
-                {"sprite_compression", kNot, "the run does not ask for it"},
-                {"visibility_sort", kCalled, "layers 'wall' and 'floor' of group background can overlap"},
-                {"color_warp", kCalled, "part 'wall' and light 'spot' move against each other"},
-                {"shadow_map", kCalled, "light 'spot': drawn again when light or casters move"},
-                {"shadow_layer", kNot, "no layer factors its shadows: their sprites hold them"},
-                {"specular_layer", kNot, "no layer with highlights factors them: its sprite holds them"},
-                {"reflection_map", kCalled, "layer 'floor' mirrors 5 layers"},
-                {"reflection_layer", kNot, "no layer factors its reflection: its sprite holds it"},
-                {"texture_layers", kNot, "no layer factors its second texture: its sprite holds it"}});
+  expect_table(
+      sequence_,
+      stage_table({"layer_resolution", kNot, "every layer has the display's resolution"},
+                  {{"shadow_layer", kNot, "no layer factors its shadows: their sprites hold them"},
+                   {"specular_layer", kNot, "no layer with highlights factors them: its sprite holds them"},
+                   {"reflection_map", kCalled, "layer 'floor' mirrors 5 layers"},
+                   {"reflection_layer", kNot, "no layer factors its reflection: its sprite holds it"},
+                   {"texture_layers", kNot, "no layer factors its second texture: its sprite holds it"}}));
 }
 
 /// Lit, textured or not, and nothing else: what is said of all other effects is the same.

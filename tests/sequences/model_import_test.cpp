@@ -125,6 +125,91 @@ TEST(ImportModel, TextureCoordinatesGrowDownwards) {
     EXPECT_NEAR(mesh.uvs[i].y, mesh.positions[i].y < 0 ? 1 : 0, 1e-6);
 }
 
+/// The triangle of moving_gltf, lit by a spot on a node that is turned to shine along +x.
+std::string spot_gltf(const std::string& spot) {
+  std::string bytes;
+  put<float>(bytes, {0, 0, 0, 1, 0, 0, 0, 1, 0});
+  return R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
+"extensions":{"KHR_lights_punctual":{"lights":[{"type":"spot","name":"lamp","color":[1,0.5,0.25],"intensity":1,"spot":)" +
+         spot + R"(}]}},"scene":0,"scenes":[{"nodes":[0,1]}],
+"nodes":[{"name":"leaf","mesh":0},{"name":"lamp","translation":[1,2,3],"rotation":[0,-0.70710678,0,0.70710678],
+"extensions":{"KHR_lights_punctual":{"light":0}}}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+"bufferViews":[{"buffer":0,"byteOffset":0,"byteLength":36}],
+"buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)" +
+         base64(bytes) + "\"}]}";
+}
+
+TEST(ImportModel, GltfSpotKeepsItsConeAndItsDirection) {
+  const TemporaryFolder folder;
+  const ImportedModel model =
+      import_model(folder.write("spot.gltf", spot_gltf(R"({"innerConeAngle":0.2,"outerConeAngle":0.5})")));
+  ASSERT_EQ(model.scene.lights.size(), 1u);
+  const layers::Light& lamp = model.scene.lights[0];
+  EXPECT_EQ(lamp.kind, layers::Light::Kind::Spot);
+  EXPECT_NEAR(lamp.inner_cone_rad, 0.2, 1e-6);  // glTF measures from the axis, as we do
+  EXPECT_NEAR(lamp.outer_cone_rad, 0.5, 1e-6);
+  const layers::LightState now = model.scene.at(0).lights.at(0);
+  EXPECT_NEAR(now.direction.x, 1, 1e-5);
+  EXPECT_NEAR(now.position.y, 2, 1e-5);
+  EXPECT_THAT(model.warnings, IsEmpty());
+}
+
+TEST(ImportModel, GltfSpotWithoutAnglesHasTheDefaultsOfTheFormat) {
+  const TemporaryFolder folder;
+  const ImportedModel model = import_model(folder.write("spot.gltf", spot_gltf("{}")));
+  ASSERT_EQ(model.scene.lights.size(), 1u);
+  EXPECT_NEAR(model.scene.lights[0].inner_cone_rad, 0, 1e-6);
+  EXPECT_NEAR(model.scene.lights[0].outer_cone_rad, std::acos(-1.0) / 4, 1e-6);
+}
+
+TEST(ImportModel, SpotConesOfAnyFileAreInRange) {
+  // Wider than a half-space, no cone at all, less than none: what scenes do not allow.
+  for (const char* spot :
+       {R"({"innerConeAngle":0.1,"outerConeAngle":3})", R"({"innerConeAngle":0,"outerConeAngle":0})",
+        R"({"innerConeAngle":-1,"outerConeAngle":0.3})"}) {
+    const TemporaryFolder folder;
+    const ImportedModel model = import_model(folder.write("spot.gltf", spot_gltf(spot)));
+    ASSERT_EQ(model.scene.lights.size(), 1u) << spot;
+    const layers::Light& lamp = model.scene.lights[0];
+    EXPECT_LE(0, lamp.inner_cone_rad) << spot;
+    EXPECT_LE(lamp.inner_cone_rad, lamp.outer_cone_rad) << spot;
+    EXPECT_GT(lamp.outer_cone_rad, 0) << spot;
+    EXPECT_LE(lamp.outer_cone_rad, std::acos(-1.0) / 2) << spot;
+  }
+}
+
+TEST(ImportModel, SpotWhoseInnerConeIsTheWiderIsRefused) {
+  const TemporaryFolder folder;
+  const std::string path =
+      folder.write("spot.gltf", spot_gltf(R"({"innerConeAngle":0.9,"outerConeAngle":0.3})"));
+  EXPECT_THAT(message_of([&] { import_model(path); }), HasSubstr("spot.gltf: cannot be read as a model"));
+}
+
+TEST(ImportModel, ColladaSpotGivesTheWholeCone) {
+  const TemporaryFolder folder;
+  const ImportedModel model = import_model(folder.write("spot.dae", R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><up_axis>Y_UP</up_axis></asset>
+<library_lights><light id="lamp" name="lamp"><technique_common><spot><color>1 1 1</color>
+<falloff_angle>60</falloff_angle><falloff_exponent>2</falloff_exponent></spot></technique_common></light></library_lights>
+<library_geometries><geometry id="leaf"><mesh>
+<source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
+<accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="leaf"><instance_geometry url="#leaf"/></node>
+<node id="lamp" name="lamp"><instance_light url="#lamp"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)"));
+  ASSERT_EQ(model.scene.lights.size(), 1u);
+  EXPECT_EQ(model.scene.lights[0].kind, layers::Light::Kind::Spot);
+  EXPECT_NEAR(model.scene.lights[0].inner_cone_rad, 30 * std::acos(-1.0) / 180, 1e-5);
+  EXPECT_GT(model.scene.lights[0].outer_cone_rad, model.scene.lights[0].inner_cone_rad);
+}
+
 TEST(ImportModel, GltfBringsMotionLayerTagAndLinearColour) {
   const TemporaryFolder folder;
   const ImportedModel model = import_model(folder.write("moving.gltf", moving_gltf()));

@@ -10,7 +10,7 @@
 
 #include "sequences/asset_paths.h"
 #include "sequences/sequence_file.h"
-#include "tests/sequences/temporary_folder.h"
+#include "tests/sequences/sequence_lines.h"
 
 namespace talisman::sequences {
 namespace {
@@ -18,6 +18,7 @@ namespace {
 using ::testing::HasSubstr;
 using tests::message_of;
 using tests::TemporaryFolder;
+using tests::text_of;
 
 /// Line 1 … of a file that is right; tests change one line.
 const std::vector<std::string> kLines = {
@@ -50,12 +51,6 @@ const std::vector<std::string> kLines = {
 const char* const kBox =
     "v 1 0 0\nv 3 0 0\nv 3 1 0\nv 1 1 0\nv 1 0 1\nv 3 0 1\nv 3 1 1\nv 1 1 1\n"
     "f 5 6 7 8\nf 2 1 4 3\nf 1 5 8 4\nf 6 2 3 7\nf 8 7 3 4\nf 1 2 6 5\n";
-
-std::string text_of(const std::vector<std::string>& lines) {
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return text;
-}
 
 Sequence load(const TemporaryFolder& folder, const std::vector<std::string>& lines = kLines) {
   folder.write("box.obj", kBox);
@@ -138,18 +133,12 @@ TEST(LoadSequence, ModelsStandWhereTheFileSays) {
   EXPECT_NEAR(glm::length(glm::dvec3(eye)), 0, 1e-9);  // look_at
 }
 
-struct Fault {
-  int line;             ///< 1 …
-  std::string text;     ///< instead of that line
-  std::string message;  ///< part of the error
-};
-
 TEST(LoadSequence, WhatIsWrongIsRefusedWithItsLine) {
-  const std::vector<Fault> faults = {
+  const std::vector<tests::Fault> faults = {
       {2, "frames: 0", "frames is '0', rule: a whole number from 1"},
       {2, "frames: 2.5", "frames is '2.5', rule: a whole number"},
       {2, "frames: many", "frames is 'many'"},
-      {2, "framse: 48", "has the key 'frames'"},
+      {2, "framse: 48", "has the key 'frames'", true},
       {3, "fps: -24", "fps is '-24', rule: a number above 0"},
       {3, "fps: .nan", "fps is '.nan', rule: a number above 0"},
       {3, "fps: .inf", "fps is '.inf'"},
@@ -182,7 +171,7 @@ TEST(LoadSequence, WhatIsWrongIsRefusedWithItsLine) {
       {14, "lights: [{kind: ambient, color: \"#12345\"}]", "rule: [r, g, b] in linear light"},
       {14, "lights: [{kind: ambient, color: [-1, 0, 0]}]", "color[0] is '-1'"},
       {16, "  - {name: still, parts: [nothing/*]}", "layer 'still': part glob 'nothing/*' matches no part"},
-      {16, "  - {name: fleet, parts: [still/*]}", "layer 'fleet': name is used twice"},
+      {16, "  - {name: fleet, parts: [still/*]}", "layer 'fleet': name is used twice", true},
       {16, "  - {name: still, parts: [still/*], group: middle}",
        "group is 'middle', rule: one of background, normal, foreground"},
       {17, "  - {name: fleet, parts: [one/*], preferences: {resolution_scale: 5}}",
@@ -193,20 +182,12 @@ TEST(LoadSequence, WhatIsWrongIsRefusedWithItsLine) {
       {19, "warp: bent", "warp is 'bent'"},
       {20, "bound: sphere", "bound is 'sphere', rule: one of box8, dop14, dop26"},
       {22, "clip_margin: 2", "clip_margin is '2', rule: a number from 0 to 1"},
-      {22, "clip_margin: [0.5", "not YAML"},
+      {22, "clip_margin: [0.5", "not YAML", true},
   };
-  for (const Fault& fault : faults) {
+  tests::expect_refused(kLines, faults, [](const std::vector<std::string>& lines) {
     const TemporaryFolder folder;
-    std::vector<std::string> lines = kLines;
-    lines[fault.line - 1] = fault.text;
-    const std::string message = message_of([&] { load(folder, lines); });
-    EXPECT_THAT(message, HasSubstr(fault.message)) << fault.text;
-    // A missing key has no line of its own, and an unclosed bracket is noticed where the file ends.
-    const bool elsewhere = fault.message.find("has the key") == 0 || fault.message == "not YAML" ||
-                           fault.text.find("name: fleet, parts: [still") != std::string::npos;
-    const std::string place = elsewhere ? "test.yaml:" : "test.yaml:" + std::to_string(fault.line) + ":";
-    EXPECT_THAT(message, HasSubstr(place)) << fault.text;
-  }
+    load(folder, lines);
+  });
 }
 
 TEST(LoadSequence, WhatIsNoMapOrNotThereIsRefused) {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/step.h"
-#include "tests/support/room.h"
+#include "tests/sequences/room_show.h"
 
 namespace talisman::sequences {
 namespace {
@@ -20,46 +20,9 @@ using regulator::Action;
 using regulator::Policy;
 using tests::Room;
 
-struct Show {
-  layers::LayerSet layers;
-  std::vector<FrameReport> reports;
-
-  int renders(const std::string& name) const {
-    int n = 0;
-    for (const FrameReport& report : reports)
-      for (const regulator::LayerDecision& d : report.plan.decisions)
-        n += layers.layers[d.layer].name == name && d.action == Action::Rerender;
-    return n;
-  }
-  ShadeCounters passes() const {
-    ShadeCounters sum;
-    for (const FrameReport& report : reports) sum += report.shade;
-    return sum;
-  }
-};
-
-Show run(const Room& room, Policy policy, int frames, bool draw, double geometric_px = 1) {
-  Show result{room.layers(), {}};
-  Settings settings;
-  settings.view.display_px = {160, 120};
-  settings.regulator.policy = policy;
-  settings.regulator.geometric_px = geometric_px;
-  settings.frames = frames;
-  const Pipeline pipeline(room.scene, result.layers, settings);
-  const chunker::PreparedScene prepared(room.scene);
-  PipelineState state(pipeline);
-  for (int frame = 0; frame < frames; ++frame)
-    result.reports.push_back(step(pipeline, state, frame, draw ? &prepared : nullptr));
-  return result;
-}
-
-/// The room with the ball flying along x, 0.5 m per second.
-Room with_flying_ball(Room room) {
-  layers::FlightTrack flight;
-  flight.position = {{0, 2}, {{-0.5, 1, 0}, {0.5, 1, 0}}, layers::Interpolation::Linear};
-  room.scene.tracks.push_back({1, flight});
-  return room;
-}
+using tests::run;
+using tests::Show;
+using tests::with_flying_ball;
 
 constexpr int kFrames = 16;
 
@@ -104,24 +67,8 @@ TEST(ShadePasses, PlanWithoutPixelsMakesTheSameDecisionsAndPasses) {
   }
 }
 
-/// Differences of two pictures in sRGB code values.
-struct Difference {
-  int max = 0, above_two = 0;
-  double mean = 0;
-};
-
-Difference difference(const chunker::Frame& a, const chunker::Frame& b) {
-  const auto x = chunker::srgb_bytes(a), y = chunker::srgb_bytes(b);
-  Difference d;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const int off = std::abs(int{x[i]} - int{y[i]});
-    d.max = std::max(d.max, off);
-    d.above_two += off > 2;
-    d.mean += off;
-  }
-  d.mean /= static_cast<double>(x.size());
-  return d;
-}
+using tests::difference;
+using tests::Difference;
 
 int lit_pixels_changed(const chunker::Frame& a, const chunker::Frame& b) {
   return difference(a, b).above_two;

@@ -11,7 +11,7 @@
 #include "sequences/image_io.h"
 #include "sequences/options.h"
 #include "sequences/sequence_file.h"
-#include "tests/sequences/temporary_folder.h"
+#include "tests/sequences/sequence_lines.h"
 
 namespace talisman::sequences {
 namespace {
@@ -56,9 +56,7 @@ const std::vector<std::string> kLines = {
 Sequence load(const TemporaryFolder& folder, const std::vector<std::string>& lines = kLines) {
   for (const char* name : {"/a.png", "/b.png"})
     write_png(folder.path() + name, {2, 1, std::vector<std::uint8_t>(6, name[1] == 'a' ? 200 : 100)});
-  std::string text;
-  for (const std::string& line : lines) text += line + "\n";
-  return load_sequence(folder.write("test.yaml", text));
+  return load_sequence(folder.write("test.yaml", tests::text_of(lines)));
 }
 
 Sequence load() {
@@ -228,21 +226,11 @@ TEST(LoadCompression, WithoutTheKeySpritesAreKeptAsTheyAre) {
 
 // --- What is wrong ---
 
-struct Fault {
-  int line;
-  std::string text;  ///< in its place
-  std::string message;
-};
-
-void expect_refused(const std::vector<Fault>& faults) {
-  for (const Fault& fault : faults) {
+void expect_refused(const std::vector<tests::Fault>& faults) {
+  tests::expect_refused(kLines, faults, [](const std::vector<std::string>& lines) {
     const TemporaryFolder folder;
-    std::vector<std::string> lines = kLines;
-    lines[fault.line - 1] = fault.text;
-    const std::string message = message_of([&] { load(folder, lines); });
-    EXPECT_THAT(message, HasSubstr(fault.message)) << fault.text;
-    EXPECT_THAT(message, HasSubstr("test.yaml:" + std::to_string(fault.line) + ":")) << fault.text;
-  }
+    load(folder, lines);
+  });
 }
 
 /// Line 3 with `more` keys of its material.

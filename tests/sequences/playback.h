@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A sequence run frame by frame, for tests that look between the frames.
+
+#include <optional>
+#include <vector>
+
+#include "sequences/sequence.h"
+#include "sequences/step.h"
+
+namespace talisman::tests {
+
+struct Playback {
+  Playback(const sequences::Sequence& s, const sequences::Settings& settings, bool draw = false)
+      : sequence(s), pipeline(*sequence.scene, sequence.layers, settings), state(pipeline) {
+    if (draw) prepared.emplace(*sequence.scene);
+  }
+  sequences::FrameReport next() {
+    return sequences::step(pipeline, state, frame++, prepared ? &*prepared : nullptr);
+  }
+  /// Up to `frames`, those that were played before left out.
+  std::vector<sequences::FrameReport> all(int frames) {
+    std::vector<sequences::FrameReport> reports;
+    while (frame < frames) reports.push_back(next());
+    return reports;
+  }
+  const sequences::Pipeline& grown() const { return sequences::with_aggregates(pipeline, state); }
+
+  sequences::Sequence sequence;
+  sequences::Pipeline pipeline;
+  sequences::PipelineState state;
+  std::optional<chunker::PreparedScene> prepared;
+  int frame = 0;
+};
+
+}  // namespace talisman::tests
