@@ -16,6 +16,8 @@ namespace talisman::sequences {
 namespace {
 
 using testing::ElementsAre;
+using layers::dvec3;
+using layers::vec3;
 using tests::Room;
 
 constexpr layers::ivec2 kDisplay{160, 120};
