@@ -192,6 +192,13 @@ class Receiver {
   WorldBounds bounds_;
 };
 
+/// Does light change what a mirror shows, however the mirror itself is lit?
+bool mirrors_lit_parts(const Scene& scene, const LayerSet& set, const Layer& layer) {
+  return is_built(Effect::Lighting) && mirrors(layer) &&
+         std::any_of(layer.reflected.begin(), layer.reflected.end(),
+                     [&](int id) { return any_part(scene, set.layers[id], is_lit); });
+}
+
 std::vector<dmat4> influence_matrices(const SceneFrame& frame, const LayerSet& set, const Layer& layer) {
   std::vector<dmat4> matrices;
   if (looks_up_shadows(layer)) matrices = part_matrices(frame, set.casting_parts);
@@ -216,7 +223,7 @@ void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<
     LayerState& state = states[layer.id];
     if (state.layer != layer.id) continue;  // an aggregate that does not exist now
     if (is_shadow(layer)) state.lights = {frame.lights[layer.light]};
-    if (mirrors(layer)) state.lights = frame.lights;  // of what is mirrored, however the mirror is lit
+    if (mirrors_lit_parts(*frame.scene, set, layer)) state.lights = frame.lights;
     if (!looks_up_shadows(layer) && layer.reflected.empty() && !is_highlight(layer)) continue;
     state.world_from_influence = influence_matrices(frame, set, layer);
     const Receiver receiver(frame, set, states, layer);

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/scene.h"
 
@@ -33,7 +32,7 @@ dvec3 skinned_position(const Mesh& mesh, std::size_t vertex, const std::vector<d
 }  // namespace
 
 std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part) {
-  if (!is_built(Effect::Skinning) || part.skin < 0) return {};
+  if (part.skin < 0) return {};
   const Skin& skin = frame.scene->skins.at(part.skin);
   TALISMAN_CHECK_EQ(skin.joints.size(), skin.joint_from_mesh.size());
   std::vector<dmat4> palette;
@@ -46,7 +45,7 @@ std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part) {
 std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part) {
   const Mesh& mesh = frame.scene->meshes.at(part.mesh);
   const dmat4 world_from_node = part.node < 0 ? dmat4(1) : frame.world_from_node.at(part.node);
-  if (!is_built(Effect::Skinning) || part.skin < 0) return rigid_positions(mesh, world_from_node);
+  if (part.skin < 0) return rigid_positions(mesh, world_from_node);
   TALISMAN_CHECK_EQ(mesh.joints.size(), mesh.positions.size());
   TALISMAN_CHECK_EQ(mesh.weights.size(), mesh.positions.size());
   const std::vector<dmat4> palette = joint_palette(frame, part);

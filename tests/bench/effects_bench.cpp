@@ -18,10 +18,10 @@
 /// The repetition is one function, effects_bench_run, on which `valgrind --tool=callgrind
 /// --toggle-collect=effects_bench_run` can be limited.
 
-#include <malloc.h>
-
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <new>
 #include <string>
@@ -35,49 +35,55 @@
 
 namespace {
 
-/// What operator new has handed out. One thread only.
+/// What operator new has handed out, in the bytes that were asked for. One thread only.
 struct Heap {
   long long allocations = 0;
   long long live_bytes = 0, peak_bytes = 0;
-  void took(void* memory) {
-    ++allocations;
-    live_bytes += static_cast<long long>(malloc_usable_size(memory));
-    if (live_bytes > peak_bytes) peak_bytes = live_bytes;
-  }
-  void gave(void* memory) { live_bytes -= static_cast<long long>(malloc_usable_size(memory)); }
 } heap;
 
-void* taken(void* memory) {
+constexpr std::size_t kHeader = 16;  ///< before each block, or its alignment where that is more
+
+/// A block whose size is written before it.
+void* take(std::size_t size, std::size_t align) {
+  const std::size_t before = std::max(kHeader, align);
+  char* memory =
+      static_cast<char*>(std::aligned_alloc(before, (before + size + before - 1) / before * before));
   if (memory == nullptr) throw std::bad_alloc();
-  heap.took(memory);
-  return memory;
+  ++heap.allocations;
+  heap.live_bytes += static_cast<long long>(size);
+  heap.peak_bytes = std::max(heap.peak_bytes, heap.live_bytes);
+  std::memcpy(memory + before - kHeader, &size, sizeof size);
+  return memory + before;
 }
 
-void give_back(void* memory) {
-  if (memory == nullptr) return;
-  heap.gave(memory);
-  std::free(memory);
+void give_back(void* block, std::size_t align) {
+  if (block == nullptr) return;
+  std::size_t size = 0;
+  std::memcpy(&size, static_cast<char*>(block) - kHeader, sizeof size);
+  heap.live_bytes -= static_cast<long long>(size);
+  std::free(static_cast<char*>(block) - std::max(kHeader, align));
 }
 
-std::size_t rounded_up(std::size_t size, std::size_t unit) { return (size + unit - 1) / unit * unit; }
+std::size_t bytes(std::align_val_t align) { return static_cast<std::size_t>(align); }
 
 }  // namespace
 
-void* operator new(std::size_t size) { return taken(std::malloc(size)); }
-void* operator new[](std::size_t size) { return taken(std::malloc(size)); }
-void* operator new(std::size_t size, std::align_val_t align) {
-  const auto unit = static_cast<std::size_t>(align);
-  return taken(std::aligned_alloc(unit, rounded_up(size, unit)));
+void* operator new(std::size_t size) { return take(size, kHeader); }
+void* operator new[](std::size_t size) { return take(size, kHeader); }
+void* operator new(std::size_t size, std::align_val_t align) { return take(size, bytes(align)); }
+void* operator new[](std::size_t size, std::align_val_t align) { return take(size, bytes(align)); }
+void operator delete(void* block) noexcept { give_back(block, kHeader); }
+void operator delete[](void* block) noexcept { give_back(block, kHeader); }
+void operator delete(void* block, std::size_t) noexcept { give_back(block, kHeader); }
+void operator delete[](void* block, std::size_t) noexcept { give_back(block, kHeader); }
+void operator delete(void* block, std::align_val_t align) noexcept { give_back(block, bytes(align)); }
+void operator delete[](void* block, std::align_val_t align) noexcept { give_back(block, bytes(align)); }
+void operator delete(void* block, std::size_t, std::align_val_t align) noexcept {
+  give_back(block, bytes(align));
 }
-void* operator new[](std::size_t size, std::align_val_t align) { return operator new(size, align); }
-void operator delete(void* memory) noexcept { give_back(memory); }
-void operator delete[](void* memory) noexcept { give_back(memory); }
-void operator delete(void* memory, std::size_t) noexcept { give_back(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { give_back(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { give_back(memory); }
-void operator delete[](void* memory, std::align_val_t) noexcept { give_back(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { give_back(memory); }
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { give_back(memory); }
+void operator delete[](void* block, std::size_t, std::align_val_t align) noexcept {
+  give_back(block, bytes(align));
+}
 
 /// What a repetition leaves behind.
 struct Drawn {
