@@ -352,7 +352,7 @@ TEST_F(Tool, AccuracyOfTheRegulatorOnABareModel) {
   expect_bad_input("accuracy --regulator cube.obj --frames 5-2", {"--frames", "5-2"});
   expect_bad_input("accuracy --regulator cube.obj --size 0x9", {"--size", "0x9"});
   expect_bad_input("accuracy --regulator cube.obj --quality-every -2", {"--quality-every", "-2"});
-  expect_bad_input("accuracy --solvers --regulator cube.obj", {"two experiments"});
+  expect_bad_input("accuracy --solvers --regulator cube.obj", {"more than one experiment"});
   expect_bad_input("accuracy", {"nothing to measure", "--regulator"});
 }
 
