@@ -93,8 +93,9 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
     if (decision.action == Action::Rerender) {
       const int instant =
           looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
-      memory.then = states_at(pipeline, state, instant)[decision.layer];  // in the memory of the last one
+      // The placement first: it depends on how long the old sprite lasted.
       memory.placement = placement_at(pipeline, state, decision.layer, instant);
+      memory.then = states_at(pipeline, state, instant)[decision.layer];
       memory.frame_rendered = report.frame;
       memory.depicts_frame = instant;
       memory.drawn = false;

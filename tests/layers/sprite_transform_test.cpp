@@ -92,7 +92,7 @@ TEST(PlaceSprite, ALayerAroundTheCameraCoversTheWholeDisplay) {
       PlacementOptions options;
       options.resolution_scale = scale;
       const SpritePlacement placement = place_sprite(state, state, dome.bound.hull, {}, options);
-      expect_covers(placement, {{0, 0}, {1024, 0}, {0, 1024}, {1024, 1024}}, 0);
+      expect_covers(placement, std::vector<dvec2>{{0, 0}, {1024, 0}, {0, 1024}, {1024, 1024}}, 0);
       EXPECT_TRUE(placement.clipped.left && placement.clipped.right && placement.clipped.top &&
                   placement.clipped.bottom);
     }
@@ -426,13 +426,13 @@ TEST(PlaceSprite, ASpriteThatIsTooLargeLosesGrowthThenResolution) {
   EXPECT_FALSE(less_growth.resolution_reduced);
   EXPECT_EQ(less_growth.size_px.x, 1060);
   EXPECT_TRUE(less_growth.clipped.left && less_growth.clipped.right);
-  expect_covers(less_growth, {{0, 512}, {1024, 512}}, 0);
+  expect_covers(less_growth, std::vector<dvec2>{{0, 512}, {1024, 512}}, 0);
   for (const int limit : {1024, 500, 33, 8, 0, -7}) {
     options.max_sprite_px = limit;
     const SpritePlacement reduced = card.place({8, 0}, extents, options);
     EXPECT_TRUE(reduced.resolution_reduced) << limit;
     EXPECT_LE(std::max(reduced.size_px.x, reduced.size_px.y), std::max(limit, 8)) << limit;
-    expect_covers(reduced, {{0, 512}, {1024, 512}}, 0);
+    expect_covers(reduced, std::vector<dvec2>{{0, 512}, {1024, 512}}, 0);
   }
 }
 
