@@ -287,7 +287,7 @@ TEST(FrameCapture, AStateThatIsUsedAgainIsAsGoodAsANewOne) {
     const layers::Layer& layer = set.layers[random() % set.layers.size()];
     layers::SceneFrame frame = scene.at(uniform(random, 0, 10));
     if (k % 5 == 0) frame.camera = camera_at(moved_by(uniform3(random, -6, 6)) * random_rotation(random));
-    if (k % 17 == 0) frame.camera.near_m = kNan;
+    if (k % 17 == 0) frame.camera.near_m = -1;  // nothing can be in view
     const layers::View view{{320, 240}, k % 2 == 0 ? 0.25 : 0.0};
     layers::FrameCapture(frame, view).capture(layer, bounds[layer.id], used);
     expect_same_state(used, capture(frame, layer, bounds[layer.id], view));
