@@ -42,8 +42,8 @@ bool faces_eye(const LayerState& state, std::size_t point) {
 
 /// The colours of the points that are seen in one of the states, or of all where none is.
 struct SeenColors {
-  std::vector<dvec3> then, now;
-  std::vector<int> point;
+  layers::InlineVector<dvec3, layers::Correspondences::kRoom> then, now;
+  layers::InlineVector<int, layers::Correspondences::kRoom> point;
 };
 
 SeenColors seen_colors(const LayerState& then, const LayerState& now) {
@@ -194,11 +194,11 @@ void note_light(const BodyMotion& motion, const LightState& then, const LightSta
 
 void follow_lights(const LayerState& then, const LayerState& now, const LayerBound& bound,
                    Photometric& result) {
+  LightState dark;
+  dark.color = {0, 0, 0};
   for (std::size_t body = 0; body < now.world_from_body.size(); ++body) {
     const BodyMotion motion = motion_of(then, now, body);
     for (std::size_t l = 0; l < std::max(then.lights.size(), now.lights.size()); ++l) {
-      LightState dark;
-      dark.color = {0, 0, 0};
       note_light(motion, l < then.lights.size() ? then.lights[l] : dark,
                  l < now.lights.size() ? now.lights[l] : dark, static_cast<int>(l), result);
     }

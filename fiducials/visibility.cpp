@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include <glm/geometric.hpp>
+
+#include "layers/outline.h"
 
 namespace talisman::fiducials {
 namespace {
@@ -25,10 +26,10 @@ struct Side {
 };
 
 /// The cut sides as segments on the display at the instant of rendering.
-std::vector<Side> cut_sides(const SpritePlacement& placement) {
+layers::InlineVector<Side, 4> cut_sides(const SpritePlacement& placement) {
   const double w = placement.size_px.x, h = placement.size_px.y;
   const layers::Affine2& screen = placement.screen_from_sprite;
-  std::vector<Side> sides;
+  layers::InlineVector<Side, 4> sides;
   const auto add = [&](bool cut, dvec2 from, dvec2 to, dvec2 inside) {
     if (cut) sides.push_back({screen(from), screen(to), screen(inside)});
   };
@@ -46,18 +47,6 @@ RectD visible_rect(const LayerState& state) {
   return intersection(display, state.screen_bounds_px);
 }
 
-/// Keeps the part of a convex polygon where normal · p ≥ offset (Sutherland & Hodgman).
-std::vector<dvec2> clip(const std::vector<dvec2>& polygon, dvec2 normal, double offset) {
-  std::vector<dvec2> kept;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const dvec2 a = polygon[i], b = polygon[(i + 1) % polygon.size()];
-    const double da = glm::dot(normal, a) - offset, db = glm::dot(normal, b) - offset;
-    if (da >= 0) kept.push_back(a);
-    if ((da >= 0) != (db >= 0)) kept.push_back(a + (b - a) * (da / (da - db)));
-  }
-  return kept;
-}
-
 struct Depth {
   double px = 0;
   dvec2 where_px{0, 0};
@@ -70,11 +59,11 @@ Depth depth_beyond(const Side& side, const RectD& visible) {
   const dvec2 along = (side.to - side.from) / length;
   dvec2 outward{-along.y, along.x};
   if (glm::dot(outward, side.inside - side.from) > 0) outward = -outward;
-  std::vector<dvec2> uncovered{
+  layers::Polygon2 uncovered{
       visible.lo, {visible.hi.x, visible.lo.y}, visible.hi, {visible.lo.x, visible.hi.y}};
-  uncovered = clip(uncovered, outward, glm::dot(outward, side.from));
-  uncovered = clip(uncovered, along, glm::dot(along, side.from));
-  uncovered = clip(uncovered, -along, -glm::dot(along, side.to));
+  uncovered = layers::clip_to_half_plane(uncovered, outward, glm::dot(outward, side.from));
+  uncovered = layers::clip_to_half_plane(uncovered, along, glm::dot(along, side.from));
+  uncovered = layers::clip_to_half_plane(uncovered, -along, -glm::dot(along, side.to));
   Depth deepest{0, centre};
   for (const dvec2& p : uncovered) {
     const double px = glm::dot(outward, p - side.from);

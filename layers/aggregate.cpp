@@ -94,12 +94,12 @@ Layer aggregate_of(std::span<const Layer> layers, std::span<const int> members, 
   return aggregate;
 }
 
-LayerBound aggregate_bound(std::span<const LayerBound> bounds, std::span<const int> members) {
+LayerBound aggregate_bound(std::span<const LayerBound* const> members) {
   LayerBound bound;
-  bound.kind = bounds[members.front()].kind;
+  bound.kind = members.front()->kind;
   int first = 0;
-  for (const int member : members) {
-    const LayerBound& body = bounds[member];
+  for (const LayerBound* member : members) {
+    const LayerBound& body = *member;
     const int triangles = static_cast<int>(bound.hull.triangles.size());
     for (const int end : body.hull.face_ends) bound.hull.face_ends.push_back(end + triangles);
     for (const auto& [a, b, c] : body.hull.triangles)

@@ -26,8 +26,8 @@ namespace talisman::layers {
 /// is cut after three members of more than four ("a+b+c+7 more").
 Layer aggregate_of(std::span<const Layer> layers, std::span<const int> members, int id);
 
-/// Its bound, of the bounds of all layers by id.
-LayerBound aggregate_bound(std::span<const LayerBound> bounds, std::span<const int> members);
+/// Its bound, of the bounds of its members.
+LayerBound aggregate_bound(std::span<const LayerBound* const> members);
 
 /// The convex bodies of a layer whose characteristic points are `world_points`: one, or one for each of its
 /// bodies. None if there are no points. The spans point into `world_points`.

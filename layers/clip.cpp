@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "layers/check.h"
+#include "layers/inline_vector.h"
 
 namespace talisman::layers {
 namespace {
@@ -81,10 +82,18 @@ void clip_polygon(const HalfSpace& h, const Polygon& polygon,
   }
 }
 
+/// A 26-direction polyhedron has 48.
+constexpr std::size_t kUsualPoints = 48;
+using Codes = InlineVector<unsigned, kUsualPoints>;
+
 /// The points found so far, each once.
 class PointSet {
  public:
-  explicit PointSet(std::size_t originals) : has_original_(originals, 0) { points_.reserve(originals + 24); }
+  explicit PointSet(std::size_t originals) {
+    has_original_.reserve(originals);
+    for (std::size_t i = 0; i < originals; ++i) has_original_.push_back(0);
+    points_.reserve(originals + 24);
+  }
 
   void add(const MaterialPoint& candidate) {
     if (candidate.point >= 0 && std::exchange(has_original_[candidate.point], 1)) return;
@@ -95,18 +104,21 @@ class PointSet {
 
  private:
   std::vector<MaterialPoint> points_;
-  std::vector<char> has_original_;
+  InlineVector<char, kUsualPoints> has_original_;
 };
 
-std::vector<unsigned> outcodes(std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
-                               std::span<const HalfSpace> half_spaces) {
-  std::vector<unsigned> codes(clip_0.size(), 0u);
-  for (std::size_t i = 0; i < codes.size(); ++i) {
+Codes outcodes(std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
+               std::span<const HalfSpace> half_spaces) {
+  Codes codes;
+  codes.reserve(clip_0.size());
+  for (std::size_t i = 0; i < clip_0.size(); ++i) {
+    unsigned code = 0;
     for (std::size_t h = 0; h < half_spaces.size(); ++h) {
       const HalfSpace& half_space = half_spaces[h];
-      codes[i] |= static_cast<unsigned>(is_outside(half_space, half_space.state == 0 ? clip_0[i] : clip_1[i]))
-                  << h;
+      code |= static_cast<unsigned>(is_outside(half_space, half_space.state == 0 ? clip_0[i] : clip_1[i]))
+              << h;
     }
+    codes.push_back(code);
   }
   return codes;
 }
@@ -156,6 +168,10 @@ std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> tria
   for (const auto& triangle : triangles) {
     const unsigned a = codes[triangle[0]], b = codes[triangle[1]], c = codes[triangle[2]];
     if (a & b & c) continue;
+    if ((a | b | c) == 0) {
+      for (const int i : triangle) points.add({{clip_0[i], clip_1[i]}, i});
+      continue;
+    }
     polygon.count = 0;
     for (const int i : triangle) polygon.push({{clip_0[i], clip_1[i]}, i});
     clip_to_crossed(half_spaces, a | b | c, polygon, spare, points);

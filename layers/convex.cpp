@@ -25,13 +25,19 @@ dvec3 middle(const ConvexSet& s) {
   return s.points.empty() ? *s.apex : sum / static_cast<double>(s.points.size());
 }
 
-dvec3 farthest(const ConvexSet& s, const dvec3& n) {
-  dvec3 best{0, 0, 0};
-  double most = -HUGE_VAL;
-  if (s.apex) best = *s.apex, most = glm::dot(best, n);
-  for (const dvec3& p : s.points) {
+const dvec3& point_of(const ConvexSet& s, int index) {
+  return index == Enclosure::kApex ? *s.apex : s.points[static_cast<std::size_t>(index)];
+}
+
+/// The index of the point farthest along n.
+int farthest(const ConvexSet& s, const dvec3& n) {
+  int best = s.apex ? Enclosure::kApex : 0;
+  double most = s.apex ? glm::dot(*s.apex, n) : -HUGE_VAL;
+  const int count = static_cast<int>(s.points.size());
+  for (int i = 0; i < count; ++i) {
+    const dvec3& p = s.points[static_cast<std::size_t>(i)];
     const double d = p.x * n.x + p.y * n.y + p.z * n.z;
-    if (d > most) most = d, best = p;
+    if (d > most) most = d, best = i;
   }
   return best;
 }
@@ -189,12 +195,16 @@ class Polytope {
 
 class DepthQuery {
  public:
-  DepthQuery(const ConvexSet& a, const ConvexSet& c, double tolerance) : a_(a), c_(c), tolerance_(tolerance) {
+  DepthQuery(const ConvexSet& a, const ConvexSet& c, double tolerance, double worthwhile)
+      : a_(a), c_(c), tolerance_(tolerance), worthwhile_(worthwhile) {
     result_.upper = HUGE_VAL, result_.lower = -HUGE_VAL;
   }
 
   DepthDecision run(dvec3 n) {
-    if (search_apart(n)) expand();
+    if (search_apart(n)) {
+      note_enclosure();
+      expand();
+    }
     result_.deeper = result_.upper > tolerance_;
     return result_;
   }
@@ -203,7 +213,9 @@ class DepthQuery {
   /// The point of A - C farthest along unit n; every call bounds the depth from above.
   dvec3 support(const dvec3& n) {
     ++result_.iterations;
-    const dvec3 w = farthest(a_, n) - farthest(c_, -n);
+    const int a = farthest(a_, n), c = farthest(c_, -n);
+    const dvec3 w = point_of(a_, a) - point_of(c_, c);
+    if (seen_count_ < kMaxApart) seen_[seen_count_++] = {w, a, c};
     scale_ = std::fmax(scale_, glm::length(w));
     const double h = glm::dot(w, n);
     if (h < result_.upper) result_.upper = h, result_.normal = n;
@@ -211,8 +223,21 @@ class DepthQuery {
   }
 
   bool spent() {
-    const bool decided = result_.upper <= tolerance_ || result_.lower > tolerance_;
-    return decided && extra_++ >= kExtraSteps;
+    const bool apart = result_.upper <= tolerance_, deeper = result_.lower > tolerance_;
+    const double most_room = apart ? tolerance_ - result_.lower : result_.upper - tolerance_;
+    return (apart || deeper) && (extra_++ >= kExtraSteps || most_room < worthwhile_);
+  }
+
+  /// The origin is in the simplex: of which points is that made?
+  void note_enclosure() {
+    if (simplex_.size != 4) return;
+    Enclosure found;
+    for (int k = 0; k < 4; ++k) {
+      const Seen* at = std::find_if(seen_.begin(), seen_.begin() + seen_count_,
+                                    [&](const Seen& s) { return s.w == simplex_.p[k]; });
+      found.a[k] = at->a, found.c[k] = at->c;
+    }
+    result_.enclosure = found;
   }
 
   /// GJK. True if the simplex reaches the origin, that is, the sets meet.
@@ -292,20 +317,42 @@ class DepthQuery {
 
   const ConvexSet& a_;
   const ConvexSet& c_;
-  double tolerance_, scale_ = 0;
+  double tolerance_, worthwhile_, scale_ = 0;
   int extra_ = 0;
   Simplex simplex_;
   DepthDecision result_;
+  struct Seen {
+    dvec3 w;
+    int a, c;
+  };
+  std::array<Seen, kMaxApart> seen_;  ///< the supports while the sets seemed to be apart
+  int seen_count_ = 0;
 };
+
+/// Of the origin from the plane of three corners, on the side of the fourth; -HUGE_VAL: no tetrahedron.
+double distance_below(const dvec3& a, const dvec3& b, const dvec3& c, const dvec3& inner) {
+  const dvec3 n = glm::cross(b - a, c - a);
+  const double side = glm::dot(n, a - inner), length = glm::length(n);
+  if (side == 0 || length == 0) return -HUGE_VAL;
+  return (side > 0 ? glm::dot(n, a) : -glm::dot(n, a)) / length;
+}
 
 }  // namespace
 
-DepthDecision decide_depth(const ConvexSet& a, const ConvexSet& c, double tolerance, const dvec3& guess) {
-  if (!contains(a) || !contains(c)) return {false, true, -HUGE_VAL, -HUGE_VAL, {0, 0, 0}, 0};
+double depth_within(const Enclosure& enclosure, const ConvexSet& a, const ConvexSet& c) {
+  std::array<dvec3, 4> p;
+  for (int k = 0; k < 4; ++k) p[k] = point_of(a, enclosure.a[k]) - point_of(c, enclosure.c[k]);
+  return std::min(std::min(distance_below(p[0], p[1], p[2], p[3]), distance_below(p[0], p[1], p[3], p[2])),
+                  std::min(distance_below(p[0], p[2], p[3], p[1]), distance_below(p[1], p[2], p[3], p[0])));
+}
+
+DepthDecision decide_depth(const ConvexSet& a, const ConvexSet& c, double tolerance, const dvec3& guess,
+                           double worthwhile) {
+  if (!contains(a) || !contains(c)) return {false, true, -HUGE_VAL, -HUGE_VAL, {0, 0, 0}, 0, {}};
   dvec3 n = guess;
   if (n == dvec3{0, 0, 0}) n = middle(c) - middle(a);
   const double length = glm::length(n);
-  return DepthQuery(a, c, tolerance).run(length > 0 ? n / length : dvec3{0, 0, 1});
+  return DepthQuery(a, c, tolerance, worthwhile).run(length > 0 ? n / length : dvec3{0, 0, 1});
 }
 
 }  // namespace talisman::layers

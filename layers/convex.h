@@ -19,6 +19,8 @@
 /// is in the simplex: the expanding polytope of van den Bergen 2001, whose inscribed ball about the origin is
 /// the lower bound.
 
+#include <array>
+#include <optional>
 #include <span>
 
 #include "layers/geometry2.h"
@@ -32,19 +34,33 @@ struct ConvexSet {
   const dvec3* apex = nullptr;
 };
 
+/// Four points of A - C, a[i] - c[i], by the indices of the sets' points; c[i] = kApex is the apex of C.
+struct Enclosure {
+  static constexpr int kApex = -1;
+  std::array<int, 4> a{}, c{};
+};
+
+/// How far the origin lies inside of the tetrahedron: a lower bound of the depth. Not above 0 where it is
+/// outside, or where the four points are in one plane.
+double depth_within(const Enclosure& enclosure, const ConvexSet& a, const ConvexSet& c);
+
 struct DepthDecision {
   bool deeper = false;  ///< depth > tolerance; where rounding leaves it open, true
   bool decided = true;  ///< false: neither bound reached the tolerance
   double lower = 0, upper = 0;
   dvec3 normal{0, 0, 0};  ///< unit, from A to C; h(normal) = upper. Zero for empty sets.
   int iterations = 0;
+  /// Where A and C meet: four corners of A - C with the origin between them, which show it without a search
+  /// as long as that is so.
+  std::optional<Enclosure> enclosure;
 };
 
 /// Is depth(A, C) > tolerance (≥ 0)? Goes on after the decision until the bounds are within a fifth
 /// of each other or some steps are spent, since a bound that is better lasts for more frames. `guess` is a
-/// direction to try first (0: from A's middle to C's). An empty set is not deeper than anything. Cost: 4 … 40
+/// direction to try first (0: from A's middle to C's). Where the bounds cannot leave room for a motion of
+/// `worthwhile` anyway it stops at the decision. An empty set is not deeper than anything. Cost: 4 … 40
 /// supports of O(points) each, typically 5.
 DepthDecision decide_depth(const ConvexSet& a, const ConvexSet& c, double tolerance,
-                           const dvec3& guess = dvec3{0, 0, 0});
+                           const dvec3& guess = dvec3{0, 0, 0}, double worthwhile = 0);
 
 }  // namespace talisman::layers

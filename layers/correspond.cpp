@@ -15,16 +15,19 @@ ViewHalfSpaces half_spaces_of(const LayerState& state, int index) {
 
 bool is_wholly_in_view(const LayerState& state) { return state.in_view() && !state.clipped; }
 
-/// Adds a material point if it has a place on both displays.
-void match(const dvec4& clip_then, const dvec4& clip_now, int point, const LayerState& then,
-           const LayerState& now, Correspondences& matched) {
-  if (!(clip_then.w > then.camera.near_m && clip_now.w > now.camera.near_m)) return;
-  const dvec2 then_px = screen_from_clip(clip_then, then.view.display_px);
-  const dvec2 now_px = screen_from_clip(clip_now, now.view.display_px);
+void add(dvec2 then_px, dvec2 now_px, int point, Correspondences& matched) {
   if (!(std::isfinite(then_px.x + then_px.y) && std::isfinite(now_px.x + now_px.y))) return;
   matched.then_px.push_back(then_px);
   matched.now_px.push_back(now_px);
   matched.point.push_back(point);
+}
+
+/// Adds a material point if it has a place on both displays.
+void match(const dvec4& clip_then, const dvec4& clip_now, int point, const LayerState& then,
+           const LayerState& now, Correspondences& matched) {
+  if (!(clip_then.w > then.camera.near_m && clip_now.w > now.camera.near_m)) return;
+  add(screen_from_clip(clip_then, then.view.display_px), screen_from_clip(clip_now, now.view.display_px),
+      point, matched);
 }
 
 void reserve(std::size_t count, Correspondences& matched) {
@@ -33,11 +36,11 @@ void reserve(std::size_t count, Correspondences& matched) {
   matched.point.reserve(count);
 }
 
+/// Where nothing is clipped every point has its place on the display already.
 void match_characteristic_points(const LayerState& then, const LayerState& now, Correspondences& matched) {
-  reserve(then.clip_points.size(), matched);
-  for (std::size_t i = 0; i < then.clip_points.size(); ++i) {
-    match(then.clip_points[i], now.clip_points[i], static_cast<int>(i), then, now, matched);
-  }
+  reserve(then.screen_points.size(), matched);
+  for (std::size_t i = 0; i < then.screen_points.size(); ++i)
+    add(then.screen_points[i], now.screen_points[i], static_cast<int>(i), matched);
 }
 
 void match_all(const std::vector<MaterialPoint>& points, const LayerState& then, const LayerState& now,
@@ -81,24 +84,6 @@ Correspondences correspond(const LayerState& then, const LayerState& now, const 
   matched.overlap = !matched.point.empty();
   if (!matched.overlap) match_all(in_either_view(then, now, hull), then, now, matched);
   return matched;
-}
-
-std::vector<dvec2> clipped_screen_points(const LayerState& state, const Polyhedron& hull) {
-  std::vector<dvec2> points;
-  if (!state.in_view()) return points;
-  const auto add = [&](const dvec4& clip) {
-    points.push_back(screen_from_clip(clip, state.view.display_px));
-  };
-  if (!state.clipped) {
-    points.reserve(state.clip_points.size());
-    for (const dvec4& clip : state.clip_points) add(clip);
-    return points;
-  }
-  const auto surface =
-      clip_surface(hull.triangles, state.clip_points, state.clip_points, half_spaces_of(state, 0));
-  points.reserve(surface.size());
-  for (const MaterialPoint& p : surface) add(p.clip[0]);
-  return points;
 }
 
 }  // namespace talisman::layers

@@ -357,21 +357,10 @@ int point_count(const LayerBound& bound) {
   return count;
 }
 
-std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, const LayerBound& bound) {
-  if (!bound.bodies.empty()) {
-    std::vector<dvec3> points;
-    for (const LayerBound& body : bound.bodies) {
-      const auto of_body = world_points(frame, layer, body);
-      if (of_body.empty()) return {};  // a part that is not finite: nothing can be said of the layer
-      points.insert(points.end(), of_body.begin(), of_body.end());
-    }
-    return points;
-  }
-  if (bound.fixed()) {
-    if (bound.node < 0) return bound.hull.points;
-    TALISMAN_CHECK_LT(bound.node, static_cast<int>(frame.world_from_node.size()));
-    return moved(frame.world_from_node[bound.node], bound.hull.points);
-  }
+namespace {
+
+/// Of a layer that deforms, or whose parts move against each other.
+std::vector<dvec3> recomputed_points(const SceneFrame& frame, const LayerBound& bound) {
   std::vector<dvec3> positions;
   for (const int part : bound.parts) {
     const auto of_part = world_positions(frame, frame.scene->parts[part]);
@@ -382,13 +371,45 @@ std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, con
   return moved(world_from_axes, bounding_polyhedron(in_axes, bound.kind).points);
 }
 
-std::vector<dmat4> world_from_bodies(const SceneFrame& frame, const LayerBound& bound) {
-  if (bound.bodies.empty()) return {axes_of(frame, bound.node >= 0 ? bound.node : bound.axes_node)};
-  std::vector<dmat4> frames;
+}  // namespace
+
+void append_world_points(const SceneFrame& frame, const LayerBound& bound, std::vector<dvec3>& points) {
+  const std::size_t before = points.size();
   for (const LayerBound& body : bound.bodies) {
-    const auto of_body = world_from_bodies(frame, body);
-    frames.insert(frames.end(), of_body.begin(), of_body.end());
+    const std::size_t first = points.size();
+    append_world_points(frame, body, points);
+    if (points.size() > first) continue;
+    points.resize(before);  // a part that is not finite: nothing can be said of the layer
+    return;
   }
+  if (!bound.bodies.empty()) return;
+  if (!bound.fixed()) {
+    const auto recomputed = recomputed_points(frame, bound);
+    points.insert(points.end(), recomputed.begin(), recomputed.end());
+    return;
+  }
+  points.insert(points.end(), bound.hull.points.begin(), bound.hull.points.end());
+  if (bound.node < 0) return;
+  TALISMAN_CHECK_LT(bound.node, static_cast<int>(frame.world_from_node.size()));
+  const dmat4& world_from_node = frame.world_from_node[bound.node];
+  for (std::size_t i = before; i < points.size(); ++i)
+    points[i] = dvec3(world_from_node * dvec4(points[i], 1));
+}
+
+std::vector<dvec3> world_points(const SceneFrame& frame, const Layer&, const LayerBound& bound) {
+  std::vector<dvec3> points;
+  append_world_points(frame, bound, points);
+  return points;
+}
+
+void append_world_from_bodies(const SceneFrame& frame, const LayerBound& bound, std::vector<dmat4>& frames) {
+  if (bound.bodies.empty()) frames.push_back(axes_of(frame, bound.node >= 0 ? bound.node : bound.axes_node));
+  for (const LayerBound& body : bound.bodies) append_world_from_bodies(frame, body, frames);
+}
+
+std::vector<dmat4> world_from_bodies(const SceneFrame& frame, const LayerBound& bound) {
+  std::vector<dmat4> frames;
+  append_world_from_bodies(frame, bound, frames);
   return frames;
 }
 

@@ -69,6 +69,9 @@ std::vector<dvec3> face_areas(std::span<const dvec3> world_points, const Polyhed
 /// points, they point away from the middle. Cost: O(triangles).
 std::vector<dvec3> point_normals(std::span<const dvec3> world_points, const Polyhedron& hull,
                                  std::span<const dmat4> world_from_body);
+/// The same, into `normals`, as many as there are points.
+void point_normals(std::span<const dvec3> world_points, const Polyhedron& hull,
+                   std::span<const dmat4> world_from_body, std::span<dvec3> normals);
 
 /// The characteristic polyhedron of one layer.
 struct LayerBound {
@@ -105,8 +108,13 @@ int point_count(const LayerBound& bound);
 /// finite. Cost: O(points) if fixed, else O(vertices of the layer).
 std::vector<dvec3> world_points(const SceneFrame& frame, const Layer& layer, const LayerBound& bound);
 
+/// The same, appended to `points`, and without `layer`, of which nothing is asked.
+void append_world_points(const SceneFrame& frame, const LayerBound& bound, std::vector<dvec3>& points);
+
 /// The space that each body of the bound turns with: its node, or the node whose axes it follows; the world's
 /// (identity) where it has none. One for a bound without bodies. Cost: O(bodies).
 std::vector<dmat4> world_from_bodies(const SceneFrame& frame, const LayerBound& bound);
+/// The same, appended.
+void append_world_from_bodies(const SceneFrame& frame, const LayerBound& bound, std::vector<dmat4>& frames);
 
 }  // namespace talisman::layers

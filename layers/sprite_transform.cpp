@@ -36,7 +36,7 @@ struct Lattice {
     return {density.x * (cos * p.x + sin * p.y), density.y * (cos * p.y - sin * p.x)};
   }
   /// Of finite points; without the calls that RectD::include makes for the sake of NaN.
-  RectD bounds(const std::vector<dvec2>& points) const {
+  RectD bounds(const Polygon2& points) const {
     RectD result;
     for (const dvec2 point : points) {
       const dvec2 p = (*this)(point);
@@ -68,19 +68,27 @@ struct Directions {
 
 double padded_area(const RectD& r) { return (r.width() + 2 * kPadding) * (r.height() + 2 * kPadding); }
 
+/// Less than the padded area of any rectangle around the polygon: its sides w and h have w h ≥ the polygon's
+/// area S, so that (w + 2 p) (h + 2 p) ≥ (√S + 2 p)². A hair less, for the rounding of both.
+double least_padded_area(const Polygon2& polygon, double density) {
+  const double side = std::sqrt(area_of(polygon)) * density + 2 * kPadding;
+  return side * side * (1 - 1e-9);
+}
+
 /// The slab direction with the least area [LS97 3.3]; the axes unless that saves the share that was asked
 /// for.
-Lattice choose_direction(const std::vector<dvec2>& shown, const PlacementOptions& options, dvec2 density) {
+Lattice choose_direction(const Polygon2& shown, const PlacementOptions& options, double density) {
   static const Directions kDirections;
   const int directions = std::clamp(options.slab_directions, kFewestDirections, kMostDirections);
-  const Lattice axes{1, 0, density};
+  const Lattice axes{1, 0, dvec2(density)};
   Lattice best = axes;
   double best_area = padded_area(axes.bounds(shown));
   const double gain = in_range(options.min_rotation_gain, 0, 1, PlacementOptions{}.min_rotation_gain);
   const double area_to_rotate = (1 - gain) * best_area;
+  if (least_padded_area(shown, density) > area_to_rotate) return axes;  // no direction saves as much
   for (int k = 1; k < directions; ++k) {
     const dvec2 direction = kDirections.of[directions][k];
-    const Lattice rotated{direction.x, direction.y, density};
+    const Lattice rotated{direction.x, direction.y, dvec2(density)};
     const double area = padded_area(rotated.bounds(shown));
     if (area >= best_area || area > area_to_rotate) continue;
     best = rotated;
@@ -104,9 +112,9 @@ bool is_blurred(const PlacementOptions& options) {
   return options.motion_density < 1 && length > 0 && std::isfinite(length);
 }
 
-Lattice choose_lattice(const std::vector<dvec2>& shown, const PlacementOptions& options) {
+Lattice choose_lattice(const Polygon2& shown, const PlacementOptions& options) {
   const double density = in_range(options.resolution_scale, 1e-3, 4, PlacementOptions{}.resolution_scale);
-  if (!is_blurred(options)) return choose_direction(shown, options, dvec2(density));
+  if (!is_blurred(options)) return choose_direction(shown, options, density);
   return along_motion(options.motion, density, std::max(options.motion_density, kLeastMotionDensity));
 }
 
@@ -134,9 +142,10 @@ RectD grown_display(const LayerState& now, const LayerState& soon, const Polyhed
                     const ExtentOptions& options) {
   const dvec2 size(now.view.display_px);
   RectD grown{{0, 0}, size};
+  const double frames = in_range(options.expected_reuse_frames, 0, HUGE_VAL, 0);
+  if (frames == 0) return grown;
   const Correspondences motion = correspond(now, soon, hull);
   if (!motion.overlap) return grown;
-  const double frames = in_range(options.expected_reuse_frames, 0, HUGE_VAL, 0);
   const double most = in_range(options.max_growth, 0, 1, 0) * std::max(size.x, size.y);
   const auto growth = [&](int axis, double sign) {
     const double speed = speed_inwards(motion, axis, sign, size[axis] / 2);
@@ -150,7 +159,7 @@ RectD grown_display(const LayerState& now, const LayerState& soon, const Polyhed
 }
 
 /// What was cut off at the enlarged view goes on beyond it: such points are moved out by a display's size.
-std::vector<dvec2> continued_beyond_view(std::vector<dvec2> outline, const View& view) {
+Polygon2 continued_beyond_view(Polygon2 outline, const View& view) {
   const dvec2 size(view.display_px);
   const double larger = std::max(size.x, size.y);
   for (dvec2& p : outline) {
@@ -211,18 +220,23 @@ SpritePlacement place_sprite(const LayerState& now, const LayerState& soon, cons
                              const ExtentOptions& extents, const PlacementOptions& options) {
   SpritePlacement placement;
   if (!now.touches_display) return placement;
-  const auto outline = convex_hull(clipped_screen_points(now, hull));
-  const auto on_display = clip_to_rect(outline, {{0, 0}, dvec2(now.view.display_px)});
+  const RectD display{{0, 0}, dvec2(now.view.display_px)};
+  const Polygon2 outline = convex_hull(now.screen_points);
+  const Polygon2 on_display = clip_to_rect(outline, display);
   if (on_display.empty()) return placement;  // its bounds touch the display, itself it passes by a corner
 
   const int max_px = std::max(options.max_sprite_px, 8);
   Lattice lattice = choose_lattice(on_display, options);
-  const double reduction = reduction_within(lattice.bounds(on_display), max_px);
-  lattice.density *= reduction;
+  RectD shown = lattice.bounds(on_display);
+  const double reduction = reduction_within(shown, max_px);
+  if (reduction < 1) {
+    lattice.density *= reduction;
+    shown = lattice.bounds(on_display);
+  }
 
-  const auto drawn_outline = clip_to_rect(outline, grown_display(now, soon, hull, extents));
+  const RectD grown = grown_display(now, soon, hull, extents);
   const RectD own = lattice.bounds(now.clipped ? continued_beyond_view(outline, now.view) : outline);
-  const RectD shown = lattice.bounds(on_display), drawn = lattice.bounds(drawn_outline);
+  const RectD drawn = grown == display ? shown : lattice.bounds(clip_to_rect(outline, grown));
   const auto along = [&](int axis) {
     return texels_along({own.lo[axis], own.hi[axis]}, {shown.lo[axis], shown.hi[axis]},
                         {drawn.lo[axis], drawn.hi[axis]}, lattice.is_flush(), max_px);

@@ -17,39 +17,9 @@ bool is_finite(const dvec4& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z) && std::isfinite(v.w);
 }
 
-void capture_appearance(const SceneFrame& frame, const Layer& layer, LayerState& state) {
-  state.world_from_part = part_matrices(frame, layer.parts);
-  if (!is_built(Effect::Lighting) || frame.lights.empty()) return;
-  if (any_part(*frame.scene, layer, is_lit)) state.lights = frame.lights;
-}
-
-bool can_be_seen(const LayerState& state) {
-  return state.camera.near_m > 0 && std::isfinite(state.camera.near_m) && state.view.display_px.x > 0 &&
-         state.view.display_px.y > 0 && state.view.clip_margin >= 0 && std::isfinite(state.view.clip_margin);
-}
-
-void capture_points(std::vector<dvec3> world_points, LayerState& state) {
-  const dmat4 clip_from_points = clip_from_world(state.camera, state.view.display_px);
-  state.world_points = std::move(world_points);
-  state.clip_points.reserve(state.world_points.size());
-  for (const dvec3& p : state.world_points) state.clip_points.push_back(clip_from_points * dvec4(p, 1));
-  if (can_be_seen(state) && std::all_of(state.clip_points.begin(), state.clip_points.end(), is_finite))
-    return;
-  state.world_points.clear();
-  state.clip_points.clear();
-}
-
-/// Normals and colours of the characteristic points, where the bound asks for them.
-void capture_shading(const SceneFrame& frame, const LayerBound& bound, LayerState& state) {
-  const bool shaded = is_built(Effect::ColorWarp) && bound.surface;
-  if (state.world_points.empty() || !(shaded || bound.follows_faces)) return;
-  state.world_from_body = world_from_bodies(frame, bound);
-  if (!shaded) return;
-  state.world_normals = point_normals(state.world_points, bound.hull, state.world_from_body);
-  state.point_colors.reserve(state.world_points.size());
-  for (std::size_t i = 0; i < state.world_points.size(); ++i)
-    state.point_colors.push_back(shaded_color(*bound.surface, state.lights,
-                                              {state.world_points[i], state.world_normals[i], state.eye()}));
+bool can_be_seen(const CameraState& camera, const View& view) {
+  return camera.near_m > 0 && std::isfinite(camera.near_m) && view.display_px.x > 0 &&
+         view.display_px.y > 0 && view.clip_margin >= 0 && std::isfinite(view.clip_margin);
 }
 
 /// Is the point of the view axis at the near distance inside the solid? (x, y, w) is an affine image of the
@@ -70,30 +40,32 @@ bool contains_nearest_point(const LayerState& state, const Polyhedron& hull) {
   return some_inside != some_outside;
 }
 
+/// Points in view: finite, so that RectD::include with its care for NaN is not needed.
 void include_visible(const dvec4& clip, LayerState& state) {
+  const dvec2 p = screen_from_clip(clip, state.view.display_px);
+  RectD& bounds = state.screen_bounds_px;
   state.nearest_w_m = state.in_view() ? std::min(state.nearest_w_m, clip.w) : clip.w;
-  state.screen_bounds_px.include(screen_from_clip(clip, state.view.display_px));
+  bounds.lo = {std::min(p.x, bounds.lo.x), std::min(p.y, bounds.lo.y)};
+  bounds.hi = {std::max(p.x, bounds.hi.x), std::max(p.y, bounds.hi.y)};
+  state.screen_points.push_back(p);
 }
 
-void capture_bounds(const Polyhedron& hull, LayerState& state) {
-  const auto half_spaces = view_half_spaces(state.camera.near_m, state.view.clip_margin, 0);
-  unsigned any = 0, all = ~0u;
-  for (const dvec4& clip : state.clip_points) {
-    const unsigned code = outcode(half_spaces, clip);
-    any |= code;
-    all &= code;
-  }
-  if (all != 0) return;  // out of view, or without points
-  if (any == 0) {
-    for (const dvec4& clip : state.clip_points) include_visible(clip, state);
-    return;
-  }
-  for (const MaterialPoint& p :
-       clip_surface(hull.triangles, state.clip_points, state.clip_points, half_spaces)) {
-    include_visible(p.clip[0], state);
-  }
-  state.clipped = state.in_view();
-  if (state.clipped && contains_nearest_point(state, hull)) state.nearest_w_m = state.camera.near_m;
+/// Everything but the memory of the vectors.
+void forget(LayerState& state) {
+  state.world_points.clear();
+  state.clip_points.clear();
+  state.screen_points.clear();
+  state.world_from_part.clear();
+  state.lights.clear();
+  state.world_from_body.clear();
+  state.world_normals.clear();
+  state.point_colors.clear();
+  state.world_from_influence.clear();
+  state.traces.clear();
+  state.world_from_receiver = dmat4(1.0);
+  state.screen_bounds_px = {};
+  state.touches_display = state.clipped = false;
+  state.nearest_w_m = 0;
 }
 
 bool overlaps_display(const RectD& bounds, ivec2 display_px) {
@@ -116,41 +88,99 @@ dmat4 clip_from_world(const CameraState& camera, ivec2 display_px) {
   return clip_from_camera * inverse(camera.world_from_camera);
 }
 
-dvec2 screen_from_clip(const dvec4& clip, ivec2 display_px) {
-  return {(0.5 + 0.5 * clip.x / clip.w) * display_px.x, (0.5 - 0.5 * clip.y / clip.w) * display_px.y};
-}
-
 bool LayerState::same_pixels(const LayerState& other) const {
   return layer == other.layer && camera == other.camera && view == other.view &&
          world_from_part == other.world_from_part && lights == other.lights &&
          world_from_influence == other.world_from_influence;
 }
 
+FrameCapture::FrameCapture(const SceneFrame& frame, const View& view)
+    : frame_(frame),
+      view_(view),
+      clip_from_world_(clip_from_world(frame.camera, view.display_px)),
+      half_spaces_(view_half_spaces(frame.camera.near_m, view.clip_margin, 0)),
+      shows_anything_(can_be_seen(frame.camera, view)) {}
+
+void FrameCapture::capture_points(const LayerBound& bound, LayerState& state) const {
+  if (shows_anything_) append_world_points(frame_, bound, state.world_points);
+  state.clip_points.reserve(state.world_points.size());
+  for (const dvec3& p : state.world_points) state.clip_points.push_back(clip_from_world_ * dvec4(p, 1));
+  if (std::all_of(state.clip_points.begin(), state.clip_points.end(), is_finite)) return;
+  state.world_points.clear();
+  state.clip_points.clear();
+}
+
+/// Normals and colours of the characteristic points, where the bound asks for them.
+void FrameCapture::capture_shading(const LayerBound& bound, LayerState& state) const {
+  const bool shaded = is_built(Effect::ColorWarp) && bound.surface;
+  if (state.world_points.empty() || !(shaded || bound.follows_faces)) return;
+  append_world_from_bodies(frame_, bound, state.world_from_body);
+  if (!shaded) return;
+  state.world_normals.resize(state.world_points.size());
+  point_normals(state.world_points, bound.hull, state.world_from_body, state.world_normals);
+  state.point_colors.reserve(state.world_points.size());
+  const dvec3 eye = state.eye();
+  for (std::size_t i = 0; i < state.world_points.size(); ++i)
+    state.point_colors.push_back(
+        shaded_color(*bound.surface, state.lights, {state.world_points[i], state.world_normals[i], eye}));
+}
+
+void FrameCapture::capture_bounds(const Polyhedron& hull, LayerState& state) const {
+  unsigned any = 0, all = ~0u;
+  for (const dvec4& clip : state.clip_points) {
+    const unsigned code = outcode(half_spaces_, clip);
+    any |= code;
+    all &= code;
+  }
+  if (all != 0) return;  // out of view, or without points
+  if (any == 0) {
+    state.screen_points.reserve(state.clip_points.size());
+    for (const dvec4& clip : state.clip_points) include_visible(clip, state);
+    return;
+  }
+  for (const MaterialPoint& p :
+       clip_surface(hull.triangles, state.clip_points, state.clip_points, half_spaces_))
+    include_visible(p.clip[0], state);
+  state.clipped = state.in_view();
+  if (state.clipped && contains_nearest_point(state, hull)) state.nearest_w_m = state.camera.near_m;
+}
+
+void FrameCapture::capture(const Layer& layer, const LayerBound& bound, LayerState& state) const {
+  forget(state);
+  state.layer = layer.id;
+  state.time_s = frame_.time_s;
+  state.view = view_;
+  state.camera = frame_.camera;
+  append_part_matrices(frame_, layer.parts, state.world_from_part);
+  const bool any_light = is_built(Effect::Lighting) && !frame_.lights.empty();
+  if (any_light && any_part(*frame_.scene, layer, is_lit)) state.lights = frame_.lights;
+  capture_points(bound, state);
+  capture_shading(bound, state);
+  if (!state.clip_points.empty()) capture_bounds(bound.hull, state);
+  state.touches_display = overlaps_display(state.screen_bounds_px, view_.display_px);
+}
+
 LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound& bound, const View& view) {
   LayerState state;
-  state.layer = layer.id;
-  state.time_s = frame.time_s;
-  state.view = view;
-  state.camera = frame.camera;
-  capture_appearance(frame, layer, state);
-  capture_points(layers::world_points(frame, layer, bound), state);
-  capture_shading(frame, bound, state);
-  if (!state.clip_points.empty()) capture_bounds(bound.hull, state);
-  state.touches_display = overlaps_display(state.screen_bounds_px, view.display_px);
+  FrameCapture(frame, view).capture(layer, bound, state);
   return state;
 }
 
-std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> parts) {
+void append_part_matrices(const SceneFrame& frame, std::span<const int> parts, std::vector<dmat4>& matrices) {
   const Scene& scene = *frame.scene;
-  std::vector<dmat4> matrices;
-  matrices.reserve(parts.size());
+  matrices.reserve(matrices.size() + parts.size());
   for (const int part : parts) matrices.push_back(frame.world_from_node[scene.parts[part].node]);
-  if (!is_built(Effect::Skinning) || scene.skins.empty()) return matrices;
+  if (!is_built(Effect::Skinning) || scene.skins.empty()) return;
   for (const int part : parts) {
     if (scene.parts[part].skin < 0) continue;
     const auto palette = joint_palette(frame, scene.parts[part]);
     matrices.insert(matrices.end(), palette.begin(), palette.end());
   }
+}
+
+std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> parts) {
+  std::vector<dmat4> matrices;
+  append_part_matrices(frame, parts, matrices);
   return matrices;
 }
 

@@ -25,6 +25,8 @@
 #include <span>
 #include <vector>
 
+#include "layers/clip.h"
+#include "layers/inline_vector.h"
 #include "layers/polyhedron.h"
 
 namespace talisman::layers {
@@ -44,7 +46,9 @@ struct View {
 dmat4 clip_from_world(const CameraState& camera, ivec2 display_px);
 
 /// Display position of a clip-space point with w > 0.
-dvec2 screen_from_clip(const dvec4& clip, ivec2 display_px);
+inline dvec2 screen_from_clip(const dvec4& clip, ivec2 display_px) {
+  return {(0.5 + 0.5 * clip.x / clip.w) * display_px.x, (0.5 - 0.5 * clip.y / clip.w) * display_px.y};
+}
 
 /// Something that moves over a surface without the surface moving: the shadow of one caster, a highlight, the
 /// mirrored picture of one layer. Its characteristic places in the receiver's own space
@@ -63,8 +67,11 @@ struct LayerState {
   double time_s = 0;
   View view;
   CameraState camera;
-  std::vector<dvec3> world_points;     ///< characteristic points; none if empty or not finite
-  std::vector<dvec4> clip_points;      ///< the same in clip space
+  std::vector<dvec3> world_points;  ///< characteristic points; none if empty or not finite
+  std::vector<dvec4> clip_points;   ///< the same in clip space
+  /// On the display: the vertices of the polyhedron's surface clipped to the enlarged view. Where nothing is
+  /// clipped those are the characteristic points, by index. Empty: out of view.
+  std::vector<dvec2> screen_points;
   std::vector<dmat4> world_from_part;  ///< of each part's node, joint palettes of skinned parts appended
   std::vector<LightState> lights;      ///< empty where no part of the layer is lit
   /// Of each body of the bound (one without bodies): the space that it turns with. Empty unless the bound
@@ -89,6 +96,27 @@ struct LayerState {
   bool same_pixels(const LayerState& other) const;
 };
 
+/// Captures the layers of one frame: what they share is worked out once. Holds a reference to the frame.
+class FrameCapture {
+ public:
+  FrameCapture(const SceneFrame& frame, const View& view);
+
+  /// `state` becomes that of `layer`, whatever it was; it keeps its memory, so that states which are used
+  /// again allocate nothing.
+  void capture(const Layer& layer, const LayerBound& bound, LayerState& state) const;
+
+ private:
+  void capture_points(const LayerBound& bound, LayerState& state) const;
+  void capture_shading(const LayerBound& bound, LayerState& state) const;
+  void capture_bounds(const Polyhedron& hull, LayerState& state) const;
+
+  const SceneFrame& frame_;
+  View view_;
+  dmat4 clip_from_world_;
+  ViewHalfSpaces half_spaces_;
+  bool shows_anything_;  ///< camera and display are such that something can be in view
+};
+
 /// The state of `layer` at `frame`. A camera or geometry that is not finite, near ≤ 0, or a display without
 /// area gives a state out of view. Cost: O(characteristic points) for a fixed bound inside the view; clipping
 /// adds O(triangles · 5); a bound with a surface O(triangles + points · lights).
@@ -96,24 +124,23 @@ LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound
 
 /// World matrices of the nodes of `parts`, joint palettes of skinned ones appended: all that moves them.
 std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> parts);
+/// The same, appended.
+void append_part_matrices(const SceneFrame& frame, std::span<const int> parts, std::vector<dmat4>& matrices);
 
 /// Matched screen points of the same material points, in pixels. Only finite points with w > near in both
 /// states.
 struct Correspondences {
-  std::vector<dvec2> then_px;
-  std::vector<dvec2> now_px;
-  std::vector<int> point;  ///< index of the characteristic point, or -1 for a point made by clipping
-  bool overlap = false;    ///< some part of the polyhedron is in the enlarged view in both states; false:
+  static constexpr std::size_t kRoom = 24;
+  InlineVector<dvec2, kRoom> then_px;
+  InlineVector<dvec2, kRoom> now_px;
+  InlineVector<int, kRoom> point;  ///< index of the characteristic point, or -1 for a point made by clipping
+  bool overlap = false;  ///< some part of the polyhedron is in the enlarged view in both states; false:
                          ///< nothing of what the old sprite shows is in view now, and no warp of it can serve
 };
 
 /// The order is that of the polyhedron's points or triangles, the same for every run. Cost: O(characteristic
 /// points) if neither state is clipped; else O(hull triangles · 10).
 Correspondences correspond(const LayerState& then, const LayerState& now, const Polyhedron& hull);
-
-/// The screen positions of the vertices of the polyhedron's surface clipped to the enlarged view (all
-/// characteristic points when nothing is clipped).
-std::vector<dvec2> clipped_screen_points(const LayerState& state, const Polyhedron& hull);
 
 /// World bounds of the characteristic points, for sorting.
 WorldBounds bounds_of(std::span<const dvec3> points);

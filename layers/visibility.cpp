@@ -197,8 +197,10 @@ std::vector<OrderEdge> VisibilitySorter::State::hold() const {
 /// The layers of the sorted line, merged ones by their ids.
 VisibilityOrder VisibilitySorter::State::arrange(const SortedLine& sorted) {
   VisibilityOrder out;
+  const int count = static_cast<int>(sorted.places.size());
+  out.order.reserve(sorted.places.size());
+  out.groups_back_to_front.reserve(sorted.places.size());
   for (const int place : sorted.places) out.order.push_back(line[place]);
-  const int count = static_cast<int>(out.order.size());
   auto cyclic = sorted.cyclic.begin();
   for (int i = 0; i < count;) {
     const bool merged = cyclic != sorted.cyclic.end() && cyclic->first == i;

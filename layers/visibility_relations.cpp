@@ -17,9 +17,11 @@ namespace {
 constexpr double kFramesAhead = 8;
 /// The same for pairs whose motion is not known yet, relative to the smaller body.
 constexpr double kFirstSlack = 0.02;
-/// And a plane is kept while it leaves that share of the slack that it had when it was found: for pairs that
-/// are too close for a lasting one.
-constexpr double kStillGood = 0.5;
+/// A witness is as good as its slack is positive. One that fails within a frame is given up for a search only
+/// if the last search found one for so many frames: trying the old one costs a tenth of a search.
+constexpr double kWorthASearch = 16;
+/// A search goes on for better bounds if they can last for so many frames.
+constexpr double kWorthABound = 2;
 /// The margin of the extents: so many frames of their change, at least that share of their width for new
 /// bodies, at most that share.
 constexpr float kMarginFrames = 12, kFirstMargin = 0.05f, kMostMargin = 0.25f;
@@ -90,6 +92,19 @@ float largest_change(const DirectionBox& a, const DirectionBox& b) {
   return most;
 }
 
+/// How far `inner` may grow on each side and stay within `outer`.
+float least_room(const DirectionBox& outer, const DirectionBox& inner) {
+  float least = HUGE_VALF;
+  for (int k = 0; k < 3; ++k) least = std::min({least, inner.lo[k] - outer.lo[k], outer.hi[k] - inner.hi[k]});
+  return least;
+}
+
+double distance_to(const WorldBounds& box, const dvec3& eye) {
+  dvec3 d;
+  for (int k = 0; k < 3; ++k) d[k] = std::max({0.0, box.lo[k] - eye[k], eye[k] - box.hi[k]});
+  return glm::length(d);
+}
+
 float width(const DirectionBox& box) {
   return std::max({box.hi[0] - box.lo[0], box.hi[1] - box.lo[1], box.hi[2] - box.lo[2]});
 }
@@ -126,6 +141,7 @@ void OcclusionRelations::remove_body(int body) {
 void OcclusionRelations::place_eye(const dvec3& eye) {
   eye_step_ = seen_before_ ? glm::length(eye - eye_) : 0;
   eye_travel_ += eye_step_;
+  eye_before_ = eye_;
   eye_ = eye, seen_before_ = true;
 }
 
@@ -133,7 +149,7 @@ void OcclusionRelations::place_body(int body, std::span<const dvec3> points) {
   Body& b = bodies_[body];
   const bool anew = b.points.size() != points.size();
   const Pass pass = pass_over(points, anew ? points : std::span<const dvec3>(b.points));
-  const DirectionBox before = b.extents;
+  b.bounds_before = b.bounds;
   if (pass.usable) {
     b.placed_anew = b.placed_anew || anew;
     b.points.assign(points.begin(), points.end());
@@ -142,20 +158,41 @@ void OcclusionRelations::place_body(int body, std::span<const dvec3> points) {
     b.size = std::max({d.x, d.y, d.z});
     b.step = std::sqrt(pass.step2);
     travel_[body] += b.step;
-    b.extents = directions_to(eye_, b.bounds.lo, b.bounds.hi);
   } else {
     b.placed_anew = true;
     b.points.clear();
-    b.bounds = WorldBounds{}, b.extents = DirectionBox{};
+    b.bounds = WorldBounds{};
   }
-  if (b.extents.empty() ? !widened_[body].empty() : b.placed_anew || !contains(widened_[body], b.extents))
-    widen(body, before);
+  follow_extents(body);
+}
+
+/// Widens the body's extents anew where they have left the widened ones.
+///
+/// Where points and eye move by S together, a point of the box around the body, at the distance d from the
+/// eye or farther, moves by √3 S relative to the eye at most, and its direction by √3 S / (d - √3 S). That is
+/// within the room m that is left while S ≤ m d / (√3 (1 + m)).
+void OcclusionRelations::follow_extents(int body) {
+  Body& b = bodies_[body];
+  if (b.points.empty()) {
+    if (!widened_[body].empty()) widen(body, {}, {});
+    return;
+  }
+  const double travel = travel_[body] + eye_travel_;
+  if (!b.placed_anew && travel <= b.extents_term) return;
+  const DirectionBox now = directions_to(eye_, b.bounds.lo, b.bounds.hi);
+  if (b.placed_anew || !contains(widened_[body], now)) {
+    const WorldBounds& before = b.bounds_before;
+    widen(body, before.empty() ? DirectionBox{} : directions_to(eye_before_, before.lo, before.hi), now);
+  }
+  constexpr double kSqrt3 = 1.7320508075688774, kRoundingOfExtents = 1e-6;
+  const double room = least_room(widened_[body], now) - kRoundingOfExtents;
+  b.extents_term =
+      room > 0 ? travel + 0.999 * room * distance_to(b.bounds, eye_) / (kSqrt3 * (1 + room)) : -1;
 }
 
 /// Gives the body a new place in the tree, `before` being its extents in the last frame.
-void OcclusionRelations::widen(int body, const DirectionBox& before) {
+void OcclusionRelations::widen(int body, const DirectionBox& before, const DirectionBox& now) {
   to_look_up_.push_back(body);
-  const DirectionBox& now = bodies_[body].extents;
   other_bodies_ = other_bodies_ || widened_[body].empty() || now.empty();
   widened_[body] = now;
   if (now.empty()) return;
@@ -218,24 +255,33 @@ OcclusionRelations::Answer OcclusionRelations::occludes(const Body& front, const
                                                         bool& exact) const {
   const double eye_reach = std::max({std::fabs(eye_.x), std::fabs(eye_.y), std::fabs(eye_.z)});
   const double smaller = std::min(front.size, behind.size);
-  const double t = touch_ * smaller + kRounding * std::max({front.reach, behind.reach, eye_reach});
+  const double rounding = kRounding * std::max({front.reach, behind.reach, eye_reach});
+  const double t = touch_ * smaller + rounding;
   const double steps = front.step + behind.step + eye_step_;
-  double wanted = std::max(kFramesAhead * steps, kFirstSlack * smaller);
-  const Plane axis = axis_plane(front.bounds, behind.bounds, eye_);
-  if (t - axis.h >= wanted) return {false, t - axis.h};
+  const double axis_slack = t - axis_plane(front.bounds, behind.bounds, eye_).h;
+  if (axis_slack >= std::max(kFramesAhead * steps, kFirstSlack * smaller)) return {false, axis_slack};
   exact = true;
-  dvec3& plane = witness.plane;
-  if (plane != dvec3{0, 0, 0}) {
-    const double low = largest_along(plane, front.points);
-    const double high = -std::max(largest_along(-plane, behind.points), glm::dot(-plane, eye_));
-    wanted = std::min(wanted, kStillGood * witness.found_slack);
-    if (t - (low - high) >= wanted) return {false, t - (low - high)};
+  const ConvexSet a{front.points}, c{behind.points, &eye_};
+  const auto still_good = [&](double slack) {
+    return slack > rounding && (slack >= steps || witness.found_slack < kWorthASearch * steps);
+  };
+  if (witness.enclosure) {
+    const double slack = depth_within(*witness.enclosure, a, c) - t;
+    if (still_good(slack)) return {true, slack};
+  } else if (witness.plane != dvec3{0, 0, 0}) {
+    const double low = largest_along(witness.plane, front.points);
+    const double high =
+        -std::max(largest_along(-witness.plane, behind.points), glm::dot(-witness.plane, eye_));
+    const double slack = std::max(axis_slack, t - (low - high));
+    if (still_good(slack)) return {false, slack};
   }
-  const DepthDecision d = decide_depth({front.points}, {behind.points, &eye_}, t, plane);
+  const DepthDecision d = decide_depth(a, c, t, witness.plane, kWorthABound * steps);
   if (!d.decided) ++counters.undecided;
-  plane = d.normal;
-  witness.found_slack = d.deeper ? HUGE_VAL : t - d.upper;
-  return d.deeper ? Answer{true, d.lower - t} : Answer{false, t - d.upper};
+  const Answer answer = d.deeper ? Answer{true, d.lower - t} : Answer{false, t - d.upper};
+  witness.plane = d.normal;
+  witness.enclosure = d.deeper ? d.enclosure : std::nullopt;
+  witness.found_slack = answer.slack;
+  return answer;
 }
 
 void OcclusionRelations::test(int index, double travel, VisibilityCounters& counters) {

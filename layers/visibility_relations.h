@@ -6,21 +6,24 @@
 /// Three things make a frame of small motion cheap:
 /// - *Extents with a margin.* The tree (layers/extent_tree.h) holds every body's angular extents, widened by
 ///   what the body is expected to move in the next frames. While the extents stay within, the pairs that the
-///   body takes part in are those it had; only when they leave, it is looked up again.
+///   body takes part in are those it had; only when they leave, it is looked up again. How far body and eye
+///   may move before they can leave is known too, so mostly they are not even computed.
 /// - *Answers with a term.* An exact test says by how much its bodies (and the eye) may move before the
 /// answer
 ///   can change: the gap to the plane that parts them, or the radius of the ball by which they overlap
 ///   (layers/convex.h). Each body sums up the largest step of its points; while the three sums of a pair stay
 ///   below the sum at the test plus that term, the answer holds.
-/// - *Witnesses.* When the term is over, the extents along the axes are tried, then last time's plane, and
-/// only
-///   then the search is run, from that plane.
+/// - *Witnesses.* When the term is over, the extents along the axes are tried, then what showed the answer
+///   last time: the plane that parted the bodies, or the four corners that enclosed the origin. Only where
+///   that fails the search is run, from that plane.
 /// None of them changes an answer: they only save asking.
 
 #include <cstdint>
 #include <span>
+#include <optional>
 #include <vector>
 
+#include "layers/convex.h"
 #include "layers/extent_tree.h"
 #include "layers/visibility.h"
 
@@ -61,7 +64,8 @@ class OcclusionRelations {
     WorldBounds bounds;
     double size = 0, step = 0;  ///< largest extent; largest step of a point since the last frame
     double reach = 0;           ///< largest coordinate
-    DirectionBox extents;
+    WorldBounds bounds_before;  ///< of the last frame; empty: there was none, or the body was empty
+    double extents_term = -1;   ///< sum of the travels up to which the extents stay within the widened ones
     std::vector<int> pairs;
   };
   /// What is known of "one of the pair can occlude the other".
@@ -72,14 +76,16 @@ class OcclusionRelations {
   /// Of one direction of a pair: the plane that parted the one from the other and the eye.
   struct Witness {
     dvec3 plane{0, 0, 0};
-    double found_slack = 0;  ///< when the plane was searched for
-    double term = -1;        ///< sum of the travels up to which the answer holds
+    std::optional<Enclosure> enclosure;  ///< or the corners that show that they are not
+    double found_slack = 0;              ///< when it was searched for
+    double term = -1;                    ///< sum of the travels up to which the answer holds
   };
   struct Witnesses {
     Witness first, second;  ///< of the first body, or the second, as the one in front
   };
 
-  void widen(int body, const DirectionBox& before);
+  void follow_extents(int body);
+  void widen(int body, const DirectionBox& before, const DirectionBox& now);
   void look_up(int body, VisibilityCounters& counters);
   void add_pair(int first, int second);
   void drop_pair(int pair);
@@ -88,7 +94,7 @@ class OcclusionRelations {
                   bool& exact) const;
 
   double touch_;
-  dvec3 eye_{0, 0, 0};
+  dvec3 eye_{0, 0, 0}, eye_before_{0, 0, 0};
   bool seen_before_ = false;
   double eye_travel_ = 0, eye_step_ = 0;
   std::vector<Body> bodies_;

@@ -70,21 +70,19 @@ std::string_view name(Action action) {
 
 std::string comparison(const char* what, double value, const char* relation, double limit, const char* unit) {
   // As "%.4g" prints, at a fraction of its time: every layer has a reason in every frame.
-  const auto number = [](double v) {
+  std::string text;
+  text.reserve(64);
+  const auto add_number = [&text](double v) {
     char digits[40];
     const auto end = std::to_chars(digits, digits + sizeof digits, v, std::chars_format::general, 4).ptr;
-    return std::string(digits, end);
+    text.append(digits, end);
   };
-  std::string text = what;
-  text.reserve(64);
-  text += ' ';
-  text += number(value);
-  text += ' ';
-  text += relation;
-  text += ' ';
-  text += number(limit);
-  if (*unit) text += ' ';
-  return text += unit;
+  text.append(what).append(1, ' ');
+  add_number(value);
+  text.append(1, ' ').append(relation).append(1, ' ');
+  add_number(limit);
+  if (*unit) text.append(1, ' ');
+  return text.append(unit);
 }
 
 LayerDecision drop(const LayerAssessment& layer) {

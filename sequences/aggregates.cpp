@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
-#include <map>
+#include <numeric>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -12,12 +13,13 @@
 #include "layers/check.h"
 #include "layers/shading.h"
 #include "sequences/layer_planning.h"
+#include "sequences/light_planning.h"
 #include "sequences/resolved_cycles.h"
 
 namespace talisman::sequences {
 
 struct GrownPipeline {
-  GrownPipeline(const Pipeline& authored, layers::LayerSet grown, std::vector<layers::LayerBound> bounds)
+  GrownPipeline(const Pipeline& authored, layers::LayerSet grown, BoundTable bounds)
       : layers(std::move(grown)), pipeline(authored, layers, std::move(bounds)) {}
   layers::LayerSet layers;
   Pipeline pipeline;
@@ -33,26 +35,98 @@ int authored_count(const Pipeline& authored) { return static_cast<int>(authored.
 
 // --- Making aggregates ---
 
-/// The id of the aggregate of these layers, which is made if they never were merged before.
-int aggregate_id(const Pipeline& authored, PipelineState& state, const std::vector<int>& members) {
-  const Pipeline& before = with_aggregates(authored, state);
-  for (std::size_t id = authored.layers.layers.size(); id < before.layers.layers.size(); ++id)
-    if (before.layers.layers[id].members == members) return static_cast<int>(id);
-  layers::LayerSet grown = before.layers;
-  std::vector<layers::LayerBound> bounds = before.bounds;
-  const int id = static_cast<int>(grown.layers.size());
-  Layer aggregate = layers::aggregate_of(grown.layers, members, id);
-  const std::string name = aggregate.name;
-  const auto is_used = [&](const Layer& layer) { return layer.name == aggregate.name; };
-  for (int k = 2; std::any_of(grown.layers.begin(), grown.layers.end(), is_used); ++k)
-    aggregate.name = name + "#" + std::to_string(k);
-  grown.layers.push_back(std::move(aggregate));
-  bounds.push_back(layers::aggregate_bound(bounds, members));
-  state.order.grown = std::make_shared<const GrownPipeline>(authored, std::move(grown), std::move(bounds));
-  state.order.last_seen.push_back(-1);
-  state.memory.emplace_back();
-  return id;
+using Members = std::vector<int>;
+
+/// Takes a name that no layer of the run has.
+std::string take_name(AggregateHistory& history, const std::string& wished) {
+  constexpr int kFirstSuffix = 2;
+  const auto [used, is_new] = history.names.try_emplace(wished, kFirstSuffix);
+  if (is_new) return wished;
+  std::string name;
+  do name = wished + "#" + std::to_string(used->second++);
+  while (!history.names.try_emplace(name, kFirstSuffix).second);
+  return name;
 }
+
+/// The serial number of the aggregate, which is entered if these layers never were merged before.
+int serial_of(const Pipeline& authored, AggregateHistory& history, const Members& members) {
+  if (history.names.empty())
+    for (const Layer& layer : authored.layers.layers) take_name(history, layer.name);
+  const int next = static_cast<int>(history.records.size());
+  const auto [it, is_new] = history.serial_of.try_emplace(members, next);
+  if (!is_new) return it->second;
+  const Layer made = layers::aggregate_of(authored.layers.layers, members, -1);
+  history.records.push_back(
+      {take_name(history, made.name), static_cast<int>(made.parts.size()), made.polygons});
+  return next;
+}
+
+/// What was captured under an id says nothing of the aggregate that has it now.
+void forget_captured(PipelineState& state, int id) {
+  for (auto& [frame, captured] : state.captured) {
+    if (static_cast<std::size_t>(id) >= captured.states.size()) continue;
+    captured.states[id].layer = -1;
+    captured.placements[id].reset();
+  }
+}
+
+/// The tables that grow while the aggregates of one frame are made; copied once, and only if one is new.
+class Growth {
+ public:
+  Growth(const Pipeline& authored, PipelineState& state) : authored_(authored), state_(state) {}
+
+  /// The id of the aggregate of these layers, which is made if it has none.
+  int id_of(const Members& members) {
+    const int serial = serial_of(authored_, state_.order.history, members);
+    const int slot = slot_of(serial);
+    state_.order.slots[slot].is_free = false;
+    const int id = authored_count(authored_) + slot;
+    if (state_.order.slots[slot].serial != serial) make(id, slot, serial, members);
+    return id;
+  }
+
+  void finish() {
+    if (layers_)
+      state_.order.grown =
+          std::make_shared<const GrownPipeline>(authored_, std::move(*layers_), std::move(bounds_));
+  }
+
+ private:
+  /// The slot that it still has, else the first free one, else a new one.
+  int slot_of(int serial) const {
+    std::vector<AggregateSlot>& slots = state_.order.slots;
+    const auto find = [&slots](auto is_wanted) {
+      return std::find_if(slots.begin(), slots.end(), is_wanted);
+    };
+    auto slot = find([serial](const AggregateSlot& s) { return s.serial == serial; });
+    if (slot == slots.end()) slot = find([](const AggregateSlot& s) { return s.is_free; });
+    if (slot == slots.end()) slot = slots.insert(slots.end(), AggregateSlot{});
+    return static_cast<int>(slot - slots.begin());
+  }
+
+  void make(int id, int slot, int serial, const Members& members) {
+    if (!layers_) {
+      const Pipeline& before = with_aggregates(authored_, state_);
+      layers_ = before.layers;
+      bounds_ = before.bounds;
+    }
+    Layer aggregate = layers::aggregate_of(authored_.layers.layers, members, id);
+    aggregate.name = state_.order.history.records[serial].name;
+    std::vector<const layers::LayerBound*> of_members;
+    for (const int member : members) of_members.push_back(&authored_.bounds[member]);
+    bounds_.put(id, following_light_and_faces(authored_, aggregate, layers::aggregate_bound(of_members)));
+    layers_->layers.resize(std::max(layers_->layers.size(), static_cast<std::size_t>(id) + 1));
+    layers_->layers[id] = std::move(aggregate);
+    state_.order.slots[slot].serial = serial;
+    state_.memory.resize(layers_->layers.size());
+    forget_captured(state_, id);
+  }
+
+  const Pipeline& authored_;
+  PipelineState& state_;
+  std::optional<layers::LayerSet> layers_;  ///< empty: nothing is new
+  BoundTable bounds_;
+};
 
 std::string names_of(const Pipeline& pipeline, const std::vector<int>& members, const char* between) {
   constexpr std::size_t kShown = 6;
@@ -113,26 +187,35 @@ double farthest_point(const layers::dvec3& eye, const LayerState& state) {
 /// point is farthest comes first: a land or a room reaches beyond what stands in it.
 std::vector<int> order_of_cycle(const MergedComponent& component, const layers::dvec3& eye,
                                 const std::vector<LayerState>& states) {
-  const auto occludes = [&](int front, int behind) {
-    const auto& relations = component.relations;
-    return std::find(relations.begin(), relations.end(), layers::ExplicitPair{behind, front}) !=
-           relations.end();
+  const auto& members = component.layers;
+  const std::size_t count = members.size();
+  const auto index = [&](int layer) {
+    return static_cast<std::size_t>(std::lower_bound(members.begin(), members.end(), layer) -
+                                    members.begin());
   };
-  std::map<int, double> distance;
-  for (const int layer : component.layers) distance[layer] = farthest_point(eye, states[layer]);
-  std::vector<int> left = component.layers, order;
+  std::vector<char> occludes(count * count, 0);  // front · count + behind
+  for (const layers::ExplicitPair& p : component.relations)
+    occludes[index(p.front) * count + index(p.behind)] = 1;
+  const auto certainly_before = [&](std::size_t front, std::size_t behind) {
+    return occludes[front * count + behind] && !occludes[behind * count + front];
+  };
+  std::vector<double> distance;
+  for (const int layer : members) distance.push_back(farthest_point(eye, states[layer]));
+  std::vector<std::size_t> left(count);
+  std::iota(left.begin(), left.end(), std::size_t{0});
+  std::vector<int> behind_it(count, 0), order;  // of those left, how many are certainly behind each
+  for (std::size_t a = 0; a < count; ++a)
+    for (std::size_t b = 0; b < count; ++b) behind_it[a] += certainly_before(a, b);
   while (!left.empty()) {
-    const auto is_last = [&](int layer) {  // nothing that is left is certainly behind it
-      return std::none_of(left.begin(), left.end(),
-                          [&](int other) { return occludes(layer, other) && !occludes(other, layer); });
-    };
+    const auto is_last = [&](std::size_t a) { return behind_it[a] == 0; };
     const bool some_last = std::any_of(left.begin(), left.end(), is_last);
-    const auto before = [&](int a, int b) {
+    const auto before = [&](std::size_t a, std::size_t b) {
       const bool free_a = !some_last || is_last(a), free_b = !some_last || is_last(b);
       return free_a != free_b ? free_a : distance[a] > distance[b];
     };
     const auto next = std::min_element(left.begin(), left.end(), before);
-    order.push_back(*next);
+    order.push_back(members[*next]);
+    for (const std::size_t a : left) behind_it[a] -= certainly_before(a, *next);
     left.erase(next);
   }
   return order;
@@ -148,6 +231,7 @@ void take_from_merged(const MergedComponent& component, layers::VisibilityCounte
 void place_groups(const Pipeline& authored, PipelineState& state, const std::vector<LayerState>& states,
                   const layers::dvec3& eye, const layers::VisibilityOrder& visibility, FrameOrder& order) {
   auto merged = visibility.merged.begin();
+  Growth growth(authored, state);
   for (const std::vector<int>& group : visibility.groups_back_to_front) {
     if (group.size() == 1) {
       order.back_to_front.push_back(group.front());
@@ -164,7 +248,7 @@ void place_groups(const Pipeline& authored, PipelineState& state, const std::vec
       order.resolved.push_back(std::move(*resolution.cycle));
       continue;
     }
-    const int id = aggregate_id(authored, state, group);
+    const int id = growth.id_of(group);
     order.back_to_front.push_back(id);
     const std::string why_not = resolution.why_not.empty() ? "" : "; " + resolution.why_not;
     order.mergers.push_back({id, why_merged(authored, component) + why_not});
@@ -173,6 +257,7 @@ void place_groups(const Pipeline& authored, PipelineState& state, const std::vec
       order.merged_parts += static_cast<int>(authored.layers.layers[member].parts.size());
     }
   }
+  growth.finish();
 }
 
 /// Shade layers lie directly in front of their bases; an aggregate holds the terms of its members itself.
@@ -192,10 +277,11 @@ void remember_order(const Pipeline& authored, PipelineState& state, int frame, c
   memory.merged_into = order.merged_into;
   memory.frame = frame;
   for (const Merger& merger : order.mergers)
-    memory.last_seen[merger.layer - authored_count(authored)] = frame;
-  for (std::size_t k = 0; k < memory.last_seen.size(); ++k) {
-    if (memory.last_seen[k] + kKeepAggregate_frames != frame) continue;
+    memory.slots[merger.layer - authored_count(authored)].last_seen = frame;
+  for (std::size_t k = 0; k < memory.slots.size(); ++k) {
+    if (memory.slots[k].is_free || memory.slots[k].last_seen + kKeepAggregate_frames != frame) continue;
     const int id = authored_count(authored) + static_cast<int>(k);
+    memory.slots[k].is_free = true;
     state.memory[id] = {};
     state.sprites.drop(id);
   }
@@ -258,6 +344,21 @@ FrameOrder order_layers(const Pipeline& authored, PipelineState& state, int fram
   remember_order(authored, state, frame, order);
   order.sort_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
   return order;
+}
+
+int row_in_run(const PipelineState& state, int layer) {
+  const int authored = static_cast<int>(state.order.merged_into.size());
+  return layer < authored ? layer : authored + state.order.slots[layer - authored].serial;
+}
+
+std::vector<int> layers_with_lines(const PipelineState& state, const FrameReport& report) {
+  std::vector<int> layers(report.order.merged_into.size());
+  std::iota(layers.begin(), layers.end(), 0);
+  const auto first_aggregate = static_cast<std::ptrdiff_t>(layers.size());
+  for (const Merger& merger : report.order.mergers) layers.push_back(merger.layer);
+  std::sort(layers.begin() + first_aggregate, layers.end(),
+            [&](int a, int b) { return row_in_run(state, a) < row_in_run(state, b); });
+  return layers;
 }
 
 void explain_order(const Pipeline& pipeline, FrameReport& report) {

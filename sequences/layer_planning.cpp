@@ -108,9 +108,34 @@ SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame) {
   return layers::predict_linear(known > 0 ? scene_at(pipeline, known - 1) : now, now, frame - known);
 }
 
+namespace {
+
+using CapturedIterator = std::map<int, CapturedFrame>::iterator;
+
+void forget(PipelineState& state, CapturedIterator first, CapturedIterator last) {
+  for (auto it = first; it != last; ++it) state.forgotten.push_back(std::move(it->second));
+  state.captured.erase(first, last);
+}
+
+/// The frame as it was captured before, or an empty one in the memory of one that was forgotten.
+CapturedFrame& captured_frame(PipelineState& state, int frame) {
+  const auto [it, is_new] = state.captured.try_emplace(frame);
+  if (!is_new || state.forgotten.empty()) return it->second;
+  it->second = std::move(state.forgotten.back());
+  state.forgotten.pop_back();
+  it->second.generation = -1;
+  for (LayerState& layer : it->second.states) layer.layer = -1;
+  it->second.placements.assign(it->second.placements.size(), std::nullopt);
+  return it->second;
+}
+
+}  // namespace
+
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
   const Policy policy = pipeline.settings.regulator.policy;
-  if (state.planned_with != pipeline.settings.regulator || predicts(pipeline)) state.captured.clear();
+  auto& captured = state.captured;
+  if (state.planned_with != pipeline.settings.regulator || predicts(pipeline))
+    forget(state, captured.begin(), captured.end());
   state.planned_with = pipeline.settings.regulator;
   state.now = frame;
   state.motion.reset();
@@ -119,9 +144,8 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
     state.motion = MotionKnown{frame, frame > 0 ? scene_at(pipeline, frame - 1) : now, now};
   }
   if (policy == Policy::Oracle) return;  // any frame of the sequence may be asked for again
-  auto& captured = state.captured;
-  captured.erase(captured.begin(), captured.lower_bound(frame));
-  if (policy != Policy::Lookahead) captured.erase(captured.upper_bound(frame + 1), captured.end());
+  forget(state, captured.begin(), captured.lower_bound(frame));
+  if (policy != Policy::Lookahead) forget(state, captured.upper_bound(frame + 1), captured.end());
 }
 
 /// The scene of a frame as far as it is known now.
@@ -133,20 +157,25 @@ SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, 
 }
 
 const std::vector<LayerState>& states_at(const Pipeline& authored, PipelineState& state, int frame) {
-  CapturedFrame& captured = state.captured[frame];
+  CapturedFrame& captured = captured_frame(state, frame);
   if (captured.generation == state.order.generation) return captured.states;
   const Pipeline& pipeline = with_aggregates(authored, state);
   captured.generation = state.order.generation;
   captured.states.resize(pipeline.layers.layers.size());
   captured.placements.resize(captured.states.size());
   std::optional<layers::SceneFrame> scene_frame;  // evaluated only if something is missing
+  std::optional<layers::FrameCapture> capture;
   for (const Layer& layer : pipeline.layers.layers) {
     LayerState& layer_state = captured.states[layer.id];
     if (layer_state.layer == layer.id || !exists_now(pipeline, state, layer.id)) continue;
-    if (!scene_frame) scene_frame = scene_as_known(pipeline, state, frame);
-    layer_state = layer.base >= 0 ? layers::shade_state(captured.states[layer.base], layer)
-                                  : layers::capture(*scene_frame, layer, pipeline.bounds[layer.id],
-                                                    pipeline.settings.view);
+    if (!scene_frame) {
+      scene_frame = scene_as_known(pipeline, state, frame);
+      capture.emplace(*scene_frame, pipeline.settings.view);
+    }
+    if (layer.base >= 0)
+      layer_state = layers::shade_state(captured.states[layer.base], layer);
+    else
+      capture->capture(layer, pipeline.bounds[layer.id], layer_state);
   }
   if (!scene_frame) return captured.states;
   layers::capture_influences(*scene_frame, pipeline.layers, captured.states);

@@ -17,27 +17,21 @@ void name(const layers::Scene& scene, fiducials::LightRef& light) {
 
 }  // namespace
 
-void follow_light_and_faces(const layers::Scene& scene, const layers::LayerSet& layers,
-                            const regulator::RegulatorOptions& options,
-                            std::vector<layers::LayerBound>& bounds) {
-  const bool light = regulator::follows_light(options);
-  const std::vector<int> carriers = light ? layers::moving_carriers(scene) : std::vector<int>();
-  for (std::size_t i = 0; i < bounds.size(); ++i) {
-    if (bounds[i].surface_why_not != layers::LayerBound{}.surface_why_not) continue;  // equipped before
-    bounds[i].follows_faces = options.turned_px > 0;
-    bounds[i].surface_why_not = "no option follows the light";
-    if (!light) continue;
-    const layers::Layer& layer = layers.layers[i];
-    if (layer.base >= 0) {
-      bounds[i].surface_why_not = "a shade layer follows where its term lies";
-      continue;
-    }
-    const layers::LightChange change = layers::light_change_of(scene, layer, carriers);
-    bounds[i].surface_why_not = change.why_not;
-    if (!layers::is_built(layers::Effect::ColorWarp) || !change.possible()) continue;
-    bounds[i].surface = layers::mean_surface(scene, layer);
-    if (layer.factored.specular) bounds[i].surface->specular = layers::dvec3(0.0);  // in a sprite of its own
-  }
+layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const layers::Layer& layer,
+                                             layers::LayerBound bound) {
+  const regulator::RegulatorOptions& options = pipeline.settings.regulator;
+  bound.follows_faces = options.turned_px > 0;
+  bound.surface.reset();
+  bound.surface_why_not = "no option follows the light";
+  if (!regulator::follows_light(options)) return bound;
+  bound.surface_why_not = "a shade layer follows where its term lies";
+  if (layer.base >= 0) return bound;
+  const layers::LightChange change = layers::light_change_of(pipeline.scene, layer, pipeline.moving_carriers);
+  bound.surface_why_not = change.why_not;
+  if (!layers::is_built(layers::Effect::ColorWarp) || !change.possible()) return bound;
+  bound.surface = layers::mean_surface(pipeline.scene, layer);
+  if (layer.factored.specular) bound.surface->specular = layers::dvec3(0.0);  // in a sprite of its own
+  return bound;
 }
 
 void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerState& then,

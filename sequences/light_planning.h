@@ -11,12 +11,11 @@
 
 namespace talisman::sequences {
 
-/// Equips the bounds (one per layer) for what these options follow: a surface for each layer on which the
-/// light can change, the frames of the bodies where turned faces are regulated. Cost: once per run; reads
-/// the triangles and textures of the layers concerned; bounds that are equipped already stay as they are.
-void follow_light_and_faces(const layers::Scene& scene, const layers::LayerSet& layers,
-                            const regulator::RegulatorOptions& options,
-                            std::vector<layers::LayerBound>& bounds);
+/// The bound, equipped for what the options follow: with a surface if the light can change on the layer, with
+/// the frames of the bodies where turned faces are regulated. Cost: once per layer and run; reads the
+/// triangles and textures of layers on which the light can change.
+layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const layers::Layer& layer,
+                                             layers::LayerBound bound);
 
 /// Fills in Report::photometric, with the names of the lights, and Report::turned.
 void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerState& then,

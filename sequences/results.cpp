@@ -259,10 +259,6 @@ std::optional<FrameLine> frame_line_from_json(const std::string& text) try {
   return std::nullopt;
 }
 
-bool has_line(const Pipeline& pipeline, const FrameReport& report, int layer) {
-  return !pipeline.layers.layers[layer].is_aggregate() || report.order.merger(layer) != nullptr;
-}
-
 std::string json_of(const Pipeline& pipeline, const FrameReport& report, const regulator::LayerDecision& d) {
   const Json json = {
       {"schema", "talisman.decision/1"},
@@ -284,12 +280,12 @@ std::string json_of(const Pipeline& pipeline, const FrameReport& report, const r
 
 namespace {
 
-LayerSummary row_of(const layers::Layer& layer) {
+LayerSummary row_of(const std::string& name, int parts, int polygons, bool is_aggregate) {
   LayerSummary row;
-  row.name = layer.name;
-  row.parts = static_cast<int>(layer.parts.size());
-  row.polygons = layer.polygons;
-  row.is_aggregate = layer.is_aggregate();
+  row.name = name;
+  row.parts = parts;
+  row.polygons = polygons;
+  row.is_aggregate = is_aggregate;
   return row;
 }
 
@@ -324,14 +320,18 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   if (settings.compression) summary.compression_quality = settings.compression->quality;
   summary.effects = layers::effects_called_for(pipeline.scene, pipeline.layers.layers, run_effects(settings));
   summary.effect_passes.assign(summary.effects.size(), 0);
-  for (const layers::Layer& layer : pipeline.layers.layers) summary.layers.push_back(row_of(layer));
+  for (const layers::Layer& layer : pipeline.layers.layers)
+    summary.layers.push_back(row_of(layer.name, static_cast<int>(layer.parts.size()), layer.polygons, false));
   return summary;
 }
 
 void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport& report,
                    const PipelineState& state) {
-  for (std::size_t id = summary.layers.size(); id < pipeline.layers.layers.size(); ++id)
-    summary.layers.push_back(row_of(pipeline.layers.layers[id]));
+  const std::size_t authored = report.order.merged_into.size();
+  const std::vector<AggregateRecord>& aggregates = state.order.history.records;
+  for (std::size_t serial = summary.layers.size() - authored; serial < aggregates.size(); ++serial)
+    summary.layers.push_back(
+        row_of(aggregates[serial].name, aggregates[serial].parts, aggregates[serial].polygons, true));
   for (std::size_t e = 0; e < summary.effects.size(); ++e)
     if (summary.effects[e].effect == layers::Effect::VisibilitySort)
       summary.effect_passes[e] += report.order.sorted;
@@ -339,7 +339,7 @@ void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport
       summary.effect_passes[e] += report.shade.shadow_maps_drawn;
   for (const regulator::LayerDecision& d : report.plan.decisions) {
     if (d.action == regulator::Action::Drop) continue;
-    LayerSummary& layer = summary.layers[d.layer];
+    LayerSummary& layer = summary.layers[row_in_run(state, d.layer)];
     ++layer.frames_shown;
     layer.sum_resolution += d.resolution;
     layer.sum_geometric_px += d.shown_geometric_px;

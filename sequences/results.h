@@ -64,9 +64,6 @@ std::string json_of(const FrameLine& line);
 /// Empty if the text is not a whole line of frames.jsonl.
 std::optional<FrameLine> frame_line_from_json(const std::string& text);
 
-/// Has this layer a line in decisions.jsonl? Aggregates have one in the frames in which they exist.
-bool has_line(const Pipeline& pipeline, const FrameReport& report, int layer);
-
 /// A line of decisions.jsonl.
 std::string json_of(const Pipeline& pipeline, const FrameReport& report,
                     const regulator::LayerDecision& decision);

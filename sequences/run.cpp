@@ -186,8 +186,8 @@ class Runner {
     if (!in_range) return;
     const Pipeline& pipeline = with_aggregates(pipeline_, state_);
     add_decisions(summary_, pipeline, report, state_);
-    for (const regulator::LayerDecision& decision : report.plan.decisions)
-      if (has_line(pipeline, report, decision.layer)) decisions_->write(json_of(pipeline, report, decision));
+    for (const int layer : layers_with_lines(state_, report))
+      decisions_->write(json_of(pipeline, report, report.plan.decisions[layer]));
     if (kept != kept_.end())
       writer_.submit([this, line = kept->second] { add_line(line); });
     else

@@ -136,9 +136,9 @@ FitResult ceres_sum_of_squares(std::span<const dvec2> then_px, std::span<const d
 
 LadderInput ladder_input(Pairs pairs) {
   LadderInput input;
-  input.matched.point.assign(pairs.size(), -1);
-  input.matched.then_px = std::move(pairs.then_px);
-  input.matched.now_px = std::move(pairs.now_px);
+  for (std::size_t i = 0; i < pairs.size(); ++i) input.matched.point.push_back(-1);
+  input.matched.then_px.append(pairs.then_px);
+  input.matched.now_px.append(pairs.now_px);
   input.matched.overlap = true;
   return input;
 }

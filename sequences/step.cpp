@@ -4,6 +4,7 @@
 #include <chrono>
 #include <map>
 
+#include "layers/animation.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/effects.h"
@@ -94,14 +95,15 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
     if (decision.action == Action::Rerender) {
       const int instant =
           looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
-      memory = {states_at(pipeline, state, instant)[decision.layer],
-                placement_at(pipeline, state, decision.layer, instant),
-                report.frame,
-                instant,
-                false,
-                decision.resolution,
-                predicts(pipeline),
-                0};
+      // The placement first: it depends on how long the old sprite lasted.
+      memory.placement = placement_at(pipeline, state, decision.layer, instant);
+      memory.then = states_at(pipeline, state, instant)[decision.layer];
+      memory.frame_rendered = report.frame;
+      memory.depicts_frame = instant;
+      memory.drawn = false;
+      memory.resolution = decision.resolution;
+      memory.predicted = predicts(pipeline);
+      memory.frames_short_of_area = 0;
       const Layer& layer = pipeline.layers.layers[decision.layer];
       decision.cost = cost_of(layer, memory.placement.size_px);
       state.shade_plan.add_render(pipeline, layer, state.captured.at(instant).shadow_maps, report.shade);
@@ -227,21 +229,20 @@ void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& sta
 Pipeline::Pipeline(const layers::Scene& scene_in, const layers::LayerSet& layers_in,
                    const Settings& settings_in)
     : scene(scene_in), layers(layers_in), settings(settings_in) {
+  if (regulator::follows_light(settings.regulator)) moving_carriers = layers::moving_carriers(scene);
   for (const Layer& layer : layers.layers)
-    bounds.push_back(layers::make_layer_bound(scene, layer, settings.bound));
+    bounds.put(layer.id, following_light_and_faces(*this, layer,
+                                                   layers::make_layer_bound(scene, layer, settings.bound)));
   sorts_visibility = layers::calls_for_visibility_sort(layers.layers);
-  follow_light_and_faces(scene, layers, settings.regulator, bounds);
 }
 
-Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in,
-                   std::vector<layers::LayerBound> bounds_in)
+Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in, BoundTable bounds_in)
     : scene(authored.scene),
       layers(layers_in),
       settings(authored.settings),
       bounds(std::move(bounds_in)),
-      sorts_visibility(authored.sorts_visibility) {
-  follow_light_and_faces(scene, layers, settings.regulator, bounds);
-}
+      moving_carriers(authored.moving_carriers),
+      sorts_visibility(authored.sorts_visibility) {}
 
 FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared) {

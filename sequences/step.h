@@ -27,6 +27,7 @@
 #include "regulator/plan.h"
 #include "sequences/sprite_compression.h"
 #include "sequences/aggregates.h"
+#include "sequences/bound_table.h"
 #include "sequences/shade_passes.h"
 #include "warp/fit.h"
 
@@ -56,12 +57,13 @@ struct Settings {
 struct Pipeline {
   Pipeline(const layers::Scene& scene, const layers::LayerSet& layers, const Settings& settings);
   /// The same with more layers behind those of `authored`: aggregates.
-  Pipeline(const Pipeline& authored, const layers::LayerSet& layers, std::vector<layers::LayerBound> bounds);
+  Pipeline(const Pipeline& authored, const layers::LayerSet& layers, BoundTable bounds);
   const layers::Scene& scene;
   const layers::LayerSet& layers;
   Settings settings;
-  std::vector<layers::LayerBound> bounds;  ///< one per layer
-  bool sorts_visibility = false;           ///< the effect visibility_sort is called for
+  BoundTable bounds;                 ///< one per layer
+  std::vector<int> moving_carriers;  ///< by node (layers/animation.h); empty unless light is followed
+  bool sorts_visibility = false;     ///< the effect visibility_sort is called for
 };
 
 /// What is remembered of one layer: how it was at the instant as of which it was last rendered.
@@ -101,6 +103,7 @@ struct PipelineState {
   ShadePlan shade_plan;
   ShadowMapStore shadow_maps;
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
+  std::vector<CapturedFrame> forgotten;   ///< were captured; the next ones are captured in their memory
   int now = 0;                            ///< the frame that is planned: what lies ahead may be a prediction
   std::optional<MotionKnown> motion;      ///< what predictions are made from; empty unless they are made
   std::optional<regulator::RegulatorOptions> planned_with;  ///< `captured` was judged under these options

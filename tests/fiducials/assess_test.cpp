@@ -41,7 +41,11 @@ SpritePlacement placed_over(const RectD& rect, layers::ClippedSides clipped = {}
 }
 
 Correspondences matched(const Pairs& pairs) {
-  return {pairs.then_px, pairs.now_px, std::vector<int>(pairs.size(), 0)};
+  Correspondences matched;
+  matched.then_px.append(pairs.then_px);
+  matched.now_px.append(pairs.now_px);
+  for (std::size_t i = 0; i < pairs.size(); ++i) matched.point.push_back(0);
+  return matched;
 }
 
 /// The visibility of a sprite cut at some sides that is carried by `warp`; the layer fills the display and

@@ -20,6 +20,13 @@ struct Fixture {
   std::vector<LayerBound> bounds;
 };
 
+std::vector<const LayerBound*> chosen(const std::vector<LayerBound>& bounds,
+                                      const std::vector<int>& members) {
+  std::vector<const LayerBound*> result;
+  for (const int member : members) result.push_back(&bounds[member]);
+  return result;
+}
+
 TEST(AggregateOf, TakesPartsAndTheStrictestPreferencesOfItsMembers) {
   Fixture f(tests::moving_scene());
   f.set.layers[0].preferences.resolution_scale = 0.5;
@@ -54,7 +61,7 @@ TEST(AggregateBound, PointsAreThoseOfTheMembersInTheirOrder) {
     const Fixture f(tests::moving_scene(), kind);
     const std::vector<int> members{0, 1, 2};
     const Layer aggregate = aggregate_of(f.set.layers, members, 3);
-    const LayerBound bound = aggregate_bound(f.bounds, members);
+    const LayerBound bound = aggregate_bound(chosen(f.bounds, members));
     const SceneFrame frame = f.scene.at(1.3);
     std::vector<dvec3> expected;
     for (const int member : members)
@@ -70,7 +77,7 @@ TEST(AggregateBound, PointsAreThoseOfTheMembersInTheirOrder) {
 TEST(AggregateBound, SkinnedMembersAreRecomputed) {
   const Fixture f(tests::skinned_bar_scene());
   const std::vector<LayerBound> bounds{f.bounds[0], f.bounds[0]};
-  const LayerBound bound = aggregate_bound(bounds, std::vector{0, 1});
+  const LayerBound bound = aggregate_bound(chosen(bounds, std::vector{0, 1}));
   const auto straight = world_points(f.scene.at(0), f.set.layers[0], bound);
   const auto bent = world_points(f.scene.at(1), f.set.layers[0], bound);
   ASSERT_EQ(straight.size(), 16u);
@@ -81,7 +88,7 @@ TEST(AggregateBound, SkinnedMembersAreRecomputed) {
 
 TEST(ConvexBodies, OneForEachBodyAndNoneWithoutPoints) {
   const Fixture f(tests::moving_scene());
-  const LayerBound bound = aggregate_bound(f.bounds, std::vector{1, 2});
+  const LayerBound bound = aggregate_bound(chosen(f.bounds, std::vector{1, 2}));
   const auto points = world_points(f.scene.at(0), f.set.layers[1], bound);
   const auto bodies = convex_bodies(bound, points);
   ASSERT_EQ(bodies.size(), 2u);
@@ -99,7 +106,7 @@ TEST(ConvexBodies, AggregatesOfLayersWithABodyPerPartAreTakenApart) {
   set.layers[0].preferences.bound_each_part = true;
   const std::vector<LayerBound> bounds{make_layer_bound(scene, set.layers[0], BoundKind::Box8),
                                        make_layer_bound(scene, set.layers[1], BoundKind::Box8)};
-  const LayerBound bound = aggregate_bound(bounds, std::vector{0, 1});
+  const LayerBound bound = aggregate_bound(chosen(bounds, std::vector{0, 1}));
   const auto points = world_points(scene.at(0), set.layers[0], bound);
   EXPECT_EQ(points.size(), 24u);
   EXPECT_EQ(convex_bodies(bound, points).size(), 3u);

@@ -208,7 +208,7 @@ TEST(Correspond, AtRestTheOwnClipOfTheStateIsTheAnswer) {
     const World world(box_corners({3, 2, 8}), BoundKind::Dop26);
     const LayerState state = world.at(moved_by(uniform3(random, -4, 4)) * random_rotation(random));
     const auto matched = correspond(state, state, world.bound.hull);
-    EXPECT_EQ(matched.then_px, clipped_screen_points(state, world.bound.hull)) << "seed " << seed;
+    EXPECT_EQ(matched.then_px, state.screen_points) << "seed " << seed;
     EXPECT_EQ(largest_motion(matched), 0) << "seed " << seed;
   }
 }
@@ -276,7 +276,7 @@ TEST(Correspond, StatesWithoutPointsMatchNothing) {
     EXPECT_TRUE(matched.point.empty());
     EXPECT_FALSE(matched.overlap);
   }
-  EXPECT_TRUE(clipped_screen_points(bad, world.bound.hull).empty());
+  EXPECT_TRUE(bad.screen_points.empty());
 }
 
 TEST(Correspond, PointLineAndPlaneHullsThatAreCut) {

@@ -249,6 +249,51 @@ TEST(Capture, EveryVertexInViewIsInsideTheBoundsAndNotNearerThanTheNearest) {
   EXPECT_GT(seen, 1000);
 }
 
+void expect_same_state(const LayerState& a, const LayerState& b) {
+  EXPECT_TRUE(a.same_pixels(b));
+  EXPECT_EQ(a.time_s, b.time_s);
+  EXPECT_EQ(a.world_points, b.world_points);
+  EXPECT_EQ(a.clip_points, b.clip_points);
+  EXPECT_EQ(a.screen_points, b.screen_points);
+  EXPECT_EQ(a.world_from_body, b.world_from_body);
+  EXPECT_EQ(a.world_normals, b.world_normals);
+  EXPECT_EQ(a.point_colors, b.point_colors);
+  EXPECT_EQ(a.screen_bounds_px, b.screen_bounds_px);
+  EXPECT_EQ(a.touches_display, b.touches_display);
+  EXPECT_EQ(a.clipped, b.clipped);
+  EXPECT_EQ(a.nearest_w_m, b.nearest_w_m);
+  EXPECT_EQ(a.world_from_receiver, b.world_from_receiver);
+  EXPECT_EQ(a.traces.size(), b.traces.size());
+}
+
+// A state that held another layer at another time, in view, cut or out of view, with colours or without, must
+// not show that.
+TEST(FrameCapture, AStateThatIsUsedAgainIsAsGoodAsANewOne) {
+  const layers::Scene scene = moving_scene();
+  const layers::LayerSet set = layers::factor(scene, one_layer_per_part(scene));
+  std::vector<layers::LayerBound> bounds;
+  for (const layers::Layer& layer : set.layers) {
+    bounds.push_back(layers::make_layer_bound(scene, layer, static_cast<layers::BoundKind>(layer.id % 3)));
+    bounds.back().follows_faces = layer.id % 2 == 0;
+    if (layer.id % 2 == 1) bounds.back().surface = layers::mean_surface(scene, layer);
+  }
+  std::mt19937 random(4);
+  LayerState used;
+  used.traces.resize(2);
+  used.world_from_influence.resize(3);
+  used.world_from_receiver = dmat4(7.0);
+  for (int k = 0; k < 300; ++k) {
+    SCOPED_TRACE("step " + std::to_string(k));
+    const layers::Layer& layer = set.layers[random() % set.layers.size()];
+    layers::SceneFrame frame = scene.at(uniform(random, 0, 10));
+    if (k % 5 == 0) frame.camera = camera_at(moved_by(uniform3(random, -6, 6)) * random_rotation(random));
+    if (k % 17 == 0) frame.camera.near_m = -1;  // nothing can be in view
+    const layers::View view{{320, 240}, k % 2 == 0 ? 0.25 : 0.0};
+    layers::FrameCapture(frame, view).capture(layer, bounds[layer.id], used);
+    expect_same_state(used, capture(frame, layer, bounds[layer.id], view));
+  }
+}
+
 TEST(BoundsOf, NoPointsAreEmpty) { EXPECT_TRUE(layers::bounds_of({}).empty()); }
 
 TEST(BoundsOf, PointsAreEnclosed) {

@@ -90,6 +90,52 @@ TEST(DecideDepth, AnyGuessGivesTheSameDecision) {
   }
 }
 
+// Asked to spend nothing on bounds that cannot last, the search still decides the same, and both bounds hold.
+TEST(DecideDepth, StoppingAtTheDecisionDoesNotChangeIt) {
+  for (int k = 0; k < 500; ++k) {
+    const tests::World w = tests::MovingBodies(k, 2, 1, 0).at(0);
+    const DepthDecision full = decide_depth({w.bodies[0]}, {w.bodies[1]}, 0.01);
+    const DepthDecision quick = decide_depth({w.bodies[0]}, {w.bodies[1]}, 0.01, {0, 0, 0}, 1e9);
+    ASSERT_EQ(quick.deeper, full.deeper) << k;
+    EXPECT_LE(quick.iterations, full.iterations) << k;
+    EXPECT_LE(quick.lower, full.upper + 1e-12) << k;
+    EXPECT_GE(quick.upper, full.lower - 1e-12) << k;
+  }
+}
+
+// The corners that enclosed the origin bound the depth from below wherever the bodies have moved since.
+TEST(DepthWithin, IsALowerBoundOfTheDepth) {
+  Dice dice(12);
+  int enclosed = 0, still = 0;
+  for (int k = 0; k < 500; ++k) {
+    const tests::World w = tests::MovingBodies(k, 2, 1, 0).at(0);
+    const Points& a = w.bodies[0];
+    Points c = w.bodies[1];
+    const dvec3 apex = dice.in_cube(4);
+    const DepthDecision met = decide_depth({a}, {c, &apex}, 0.01);
+    if (!met.enclosure) continue;  // they do not meet
+    ++enclosed;
+    EXPECT_GT(met.upper, 0) << k;
+    EXPECT_LE(depth_within(*met.enclosure, {a}, {c, &apex}), met.upper + 1e-12) << k;
+    for (int step = 0; step < 6; ++step) {
+      for (dvec3& p : c) p += dice.in_cube(0.1);
+      const double within = depth_within(*met.enclosure, {a}, {c, &apex});
+      const DepthDecision now = decide_depth({a}, {c, &apex}, 1e-9);
+      EXPECT_LE(within, std::max(now.upper, 0.0) + 1e-12) << k << " step " << step;
+      still += within > 0;
+    }
+  }
+  EXPECT_GT(enclosed, 50);
+  EXPECT_GT(still, enclosed) << "it is worth keeping only if it lasts";
+}
+
+TEST(DepthWithin, FourPointsInOnePlaneEncloseNothing) {
+  const Points a = box({0, 0, 0}, {1, 1, 1}), c = {{0, 0, 0}};
+  const Enclosure face{{0, 1, 2, 3}, {0, 0, 0, 0}}, one_point{{0, 0, 0, 0}, {0, 0, 0, 0}};
+  EXPECT_LE(depth_within(face, {a}, {c}), 0);
+  EXPECT_LE(depth_within(one_point, {a}, {c}), 0);
+}
+
 TEST(DirectionsTo, ContainTheDirectionsToEveryPoint) {
   Dice dice(3);
   for (int k = 0; k < 2000; ++k) {

@@ -232,8 +232,7 @@ TEST(Aggregates, ResultsNameThem) {
   for (int frame = 0; frame < 20; ++frame) {
     const FrameReport report = run.next();
     add_decisions(summary, run.grown(), report, run.state);
-    for (const regulator::LayerDecision& d : report.plan.decisions)
-      lines += has_line(run.grown(), report, d.layer);
+    lines += static_cast<int>(layers_with_lines(run.state, report).size());
     merged_frames += !report.order.mergers.empty();
     summary.frames.push_back(line_of(run.grown(), report));
     const auto again = frame_line_from_json(json_of(summary.frames.back()));
