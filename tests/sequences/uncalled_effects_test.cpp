@@ -121,7 +121,8 @@ Numbers of_visibility_sort(const WholeRun& run) {
 
 Numbers of_color_warp(const WholeRun& run) {
   double surfaces = 0;
-  for (const layers::LayerBound& bound : run.pipeline.bounds) surfaces += bound.surface.has_value();
+  for (std::size_t id = 0; id < run.pipeline.bounds.size(); ++id)
+    surfaces += run.pipeline.bounds[id].surface.has_value();
   return {{"mean surfaces", surfaces},
           {"fiducials computed", sum_over(run,
                                           [](auto& r) {
