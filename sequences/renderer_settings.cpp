@@ -13,7 +13,7 @@ using chunker::TextureFilter;
 using layers::Effect;
 using layers::LayerKind;
 
-constexpr int kFinestMapPx = 4096, kFinestPcfRadius = 3, kFinestAnisotropy = 16, kFinestSamples = 16;
+constexpr int kFinestMapPx = 2048, kFinestPcfRadius = 3, kFinestAnisotropy = 16, kFinestSamples = 16;
 
 std::string number(double value, const char* unit = "") {
   char text[48];
@@ -121,7 +121,7 @@ void add_lights(LadderBuilder& ladder) {
   ladder.truth_rung("phong");
 
   ladder.pass("shadow map", WorkKind::MapBytes, Effect::ShadowMap);
-  for (const int px : {128, 256, 512, 1024, 2048})
+  for (const int px : {128, 256, 512, 1024})
     ladder.shadow_rung(number(px, " px"), [&](auto& shadow) { shadow.resolution_px = px; });
   ladder.truth_rung(number(kFinestMapPx, " px"));
 

@@ -8,7 +8,7 @@
 ///     merge tolerances    the default, 0
 ///     texture filter      nearest, bilinear, trilinear, anisotropy 2 … 16        where a texture is called
 ///     for shading             flat, Gouraud, Phong                                   … lighting shadow map
-///     128 … 4096 texels                                      … a shadow map shadow filter percentage-closer
+///     128 … 2048 texels                                      … a shadow map shadow filter percentage-closer
 ///     radius 0 … 3 texels                  … a shadow map
 ///   through sprites (policy reference)
 ///     sprite resolution   0.25 … 2 texels per pixel, all layers

@@ -19,7 +19,7 @@ namespace {
 using layers::Effect;
 using testing::UnorderedElementsAreArray;
 
-/// All effects but shadows: the truth's maps of 4096 texels would take most of the test's time.
+/// All effects but shadows: the truth's maps of 2048 texels would take most of the test's time.
 const Variant& shadowless() {
   static const Variant variant = without_effect(tests::every_effect(6), Effect::ShadowMap);
   return variant;

@@ -70,7 +70,7 @@ TEST(RendererLadder, GoesFromCoarseToFine) {
               ElementsAre(16, 16, 1, 2, 4, 8, 16))
       << "anisotropy takes no part in the first two, which are not trilinear";
   EXPECT_THAT(values_of("shadow map", [](const Variant& v) { return shadow_of(v).resolution_px; }),
-              ElementsAre(128, 256, 512, 1024, 2048, 4096));
+              ElementsAre(128, 256, 512, 1024, 2048));
   EXPECT_THAT(values_of("shadow filter", [](const Variant& v) { return shadow_of(v).pcf_radius; }),
               ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(labels_of("shading"), ElementsAre("flat", "gouraud", "phong"));
@@ -166,7 +166,7 @@ TEST(Finest, TurnsAllUpAndLeavesWhatWasGivenAsItWas) {
   EXPECT_EQ(truth.settings.render.samples, 16);
   EXPECT_EQ(truth.settings.render.merge_depth, 0);
   EXPECT_EQ(truth.settings.render.max_anisotropy, 16);
-  EXPECT_EQ(shadow_of(truth).resolution_px, 4096);
+  EXPECT_EQ(shadow_of(truth).resolution_px, 2048);
   EXPECT_FALSE(truth.settings.compression);
   for (const layers::Layer& layer : truth.sequence.layers.layers) {
     EXPECT_EQ(layer.preferences.resolution_scale, 1) << layer.name;
