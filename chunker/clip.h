@@ -18,8 +18,8 @@
 ///
 ///   n' · (X, Y, w) ≥ d',   n' = M⁻ᵀ n,   d' = d + n' · t
 ///
-/// so it cuts like the near plane does. A point whose n' · q - d' vanishes beside its terms lies on the plane,
-/// and what lies on the plane is kept: a surface in the plane stays whole, whatever the rounding.
+/// so it cuts like the near plane does. A point whose n' · q - d' vanishes beside its terms lies on the
+/// plane, and what lies on the plane is kept: a surface in the plane stays whole, whatever the rounding.
 
 #include <array>
 #include <optional>

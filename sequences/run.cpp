@@ -170,7 +170,8 @@ class Runner {
     frames_ = std::make_unique<LineFile>(options.out + "/frames.jsonl", kept_lines);
     summary_ = start_summary(pipeline_, sequence.name);
     summary_.planned_only = options.plan_only;
-    if (!options.plan_only) prepared_ = std::make_unique<chunker::PreparedScene>(*sequence.scene, settings.render);
+    if (!options.plan_only)
+      prepared_ = std::make_unique<chunker::PreparedScene>(*sequence.scene, settings.render);
   }
 
   int frames_kept() const { return static_cast<int>(kept_.size()); }
