@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include <glm/geometric.hpp>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
 
 #include "chunker/transform.h"
 #include "layers/check.h"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
+#include <glm/geometric.hpp>
 
 #include "chunker/bin.h"
 #include "chunker/coverage.h"

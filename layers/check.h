@@ -26,14 +26,14 @@ std::string both_values(const char* expression, const A& a, const B& b) {
 
 }  // namespace talisman::layers
 
-#define TALISMAN_CHECK(condition)                                               \
-  do {                                                                          \
+#define TALISMAN_CHECK(condition)                                                       \
+  do {                                                                                  \
     if (!(condition)) ::talisman::layers::check_failed(__FILE__, __LINE__, #condition); \
   } while (false)
-#define TALISMAN_CHECK_OP(a, op, b)                                                                    \
-  do {                                                                                                 \
-    if (!((a)op(b)))                                                                                   \
-      ::talisman::layers::check_failed(__FILE__, __LINE__,                                             \
+#define TALISMAN_CHECK_OP(a, op, b)                                                                   \
+  do {                                                                                                \
+    if (!((a)op(b)))                                                                                  \
+      ::talisman::layers::check_failed(__FILE__, __LINE__,                                            \
                                        ::talisman::layers::both_values(#a " " #op " " #b, (a), (b))); \
   } while (false)
 #define TALISMAN_CHECK_EQ(a, b) TALISMAN_CHECK_OP(a, ==, b)

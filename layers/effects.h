@@ -27,7 +27,7 @@ struct EffectCall {
 /// The effects that a run asks for, whatever the scene.
 struct RunEffects {
   std::optional<int> compression_quality;  ///< empty: sprites are kept as they are
-  bool mip_filter = true;     ///< false: the run looks textures up in their finest level only
+  bool mip_filter = true;                  ///< false: the run looks textures up in their finest level only
   bool follows_light = true;  ///< false: neither a colour warp nor a fiducial of the light is asked for
 };
 

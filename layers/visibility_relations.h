@@ -19,8 +19,8 @@
 /// None of them changes an answer: they only save asking.
 
 #include <cstdint>
-#include <span>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "layers/convex.h"

@@ -95,8 +95,8 @@ struct RegulatorOptions {
   double light_angle_rad = 0;  ///< 0 … π: a light (or, for highlights, the eye) may have moved by this angle
                                ///< about the layer: the alternative for hardware without colour warp; 0:
                                ///< not regulated
-  bool color_warp = true;     ///< reused sprites are multiplied with the colour that fits their shading
-                              ///< best; false: hardware without it, the photometric error is that of 1
+  bool color_warp = true;      ///< reused sprites are multiplied with the colour that fits their shading
+                               ///< best; false: hardware without it, the photometric error is that of 1
   int lookahead_frames = 16;  ///< Lookahead: N ≥ 0; a sprite may be drawn as of an instant up to N frames
                               ///< ahead; 0 draws as of now; planning time grows with N, renders fall
   std::int64_t budget_polygons = kNoLimit;  ///< Budget: triangles per frame, ≥ 0; more is drawn as it grows

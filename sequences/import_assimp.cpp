@@ -5,9 +5,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
+#include <assimp/Importer.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include <assimp/material.h>
 #include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
 
 #include "sequences/import_assimp.h"
 #include "sequences/tile_image.h"

@@ -25,10 +25,10 @@
 #include "layers/state.h"
 #include "regulator/budget.h"
 #include "regulator/plan.h"
-#include "sequences/sprite_compression.h"
 #include "sequences/aggregates.h"
 #include "sequences/bound_table.h"
 #include "sequences/shade_passes.h"
+#include "sequences/sprite_compression.h"
 #include "warp/fit.h"
 
 namespace talisman::sequences {

@@ -159,7 +159,8 @@ bool is_one_edit_away(const std::string& a, const std::string& b) {
   std::size_t same = 0;
   while (same < shorter.size() && shorter[same] == longer[same]) ++same;
   const std::size_t skip = longer.size() == shorter.size() ? 1 : 0;
-  return shorter.compare(std::min(same + skip, shorter.size()), std::string::npos, longer, same + 1, std::string::npos) == 0;
+  return shorter.compare(std::min(same + skip, shorter.size()), std::string::npos, longer, same + 1,
+                         std::string::npos) == 0;
 }
 
 }  // namespace

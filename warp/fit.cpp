@@ -123,7 +123,8 @@ void measure_with(std::span<const dvec2> then_px, std::span<const dvec2> now_px,
     const dvec2 r = map(then_px[i]) - now_px[i];
     const double squared = r.x * r.x + r.y * r.y;
     sum += squared;
-    worst = squared > largest ? static_cast<int>(i) : worst;  // a branch here would often be predicted wrongly
+    worst =
+        squared > largest ? static_cast<int>(i) : worst;  // a branch here would often be predicted wrongly
     largest = squared > largest ? squared : largest;
   }
   result.rms_px = std::sqrt(sum / static_cast<double>(then_px.size()));

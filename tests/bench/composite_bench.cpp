@@ -16,9 +16,9 @@
 #include <vector>
 
 #include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
-#include <tbb/global_control.h>
 
 #include "chunker/composite.h"
 #include "chunker/span_composite.h"

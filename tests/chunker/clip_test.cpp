@@ -3,8 +3,8 @@
 
 #include <random>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 namespace talisman::chunker {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstring>
 #include <random>
 
-#include <glm/geometric.hpp>
 #include <tbb/global_control.h>
+#include <glm/geometric.hpp>
 
 #include "tests/chunker/render_support.h"
 #include "tests/support/scenes.h"

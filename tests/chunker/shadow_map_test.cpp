@@ -5,8 +5,8 @@
 #include <cstring>
 #include <random>
 
-#include <glm/geometric.hpp>
 #include <tbb/global_control.h>
+#include <glm/geometric.hpp>
 
 #include "tests/chunker/shade_support.h"
 

@@ -2,8 +2,8 @@
 #include <cmath>
 #include <limits>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "fiducials/fiducials.h"
 #include "tests/support/correspondences.h"

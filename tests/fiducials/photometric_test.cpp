@@ -5,8 +5,8 @@
 #include <limits>
 #include <numbers>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "fiducials/turned_faces.h"
 #include "tests/layers/worlds.h"

@@ -70,10 +70,12 @@ TEST(House, IncludesGoOneWay) {
 }
 
 TEST(House, OnlySequencesTouchesFiles) {
-  const std::regex file_io(R"re(^\s*#\s*include\s*<(fstream|filesystem|OpenImageIO/.*|opencv2/.*|assimp/.*|yaml-cpp/.*)>)re");
+  const std::regex file_io(
+      R"re(^\s*#\s*include\s*<(fstream|filesystem|OpenImageIO/.*|opencv2/.*|assimp/.*|yaml-cpp/.*)>)re");
   for (const auto& file : sources_of({"layers", "warp", "fiducials", "regulator", "chunker"}))
     for (std::size_t i = 0; i < file.lines.size(); ++i)
-      EXPECT_FALSE(std::regex_search(file.lines[i], file_io)) << file.path << ":" << i + 1 << ": " << file.lines[i];
+      EXPECT_FALSE(std::regex_search(file.lines[i], file_io))
+          << file.path << ":" << i + 1 << ": " << file.lines[i];
 }
 
 TEST(House, EigenAndCeresStayInsideWarpSources) {

@@ -6,9 +6,9 @@
 #include <numbers>
 #include <random>
 
+#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
-#include <gtest/gtest.h>
 
 namespace talisman::layers {
 namespace {

@@ -11,10 +11,10 @@
 #include <tuple>
 #include <utility>
 
-#include <glm/geometric.hpp>
-#include <glm/gtc/quaternion.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "layers/animation.h"
 #include "tests/support/scenes.h"

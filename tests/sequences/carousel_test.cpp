@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstdio>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "sequences/image_io.h"
 #include "sequences/options.h"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/image_io.h"
 
+#include <sys/resource.h>
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -10,7 +11,6 @@
 #include <iterator>
 #include <random>
 #include <set>
-#include <sys/resource.h>
 #include <thread>
 
 #include <OpenImageIO/imageio.h>

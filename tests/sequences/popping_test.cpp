@@ -6,8 +6,8 @@
 #include <numeric>
 #include <random>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 namespace talisman::sequences {
 namespace {

@@ -10,8 +10,8 @@
 #include <random>
 
 #include <gtest/gtest.h>
-#include <opencv2/imgproc.hpp>
 #include <tbb/global_control.h>
+#include <opencv2/imgproc.hpp>
 
 #include "sequences/child_process.h"
 

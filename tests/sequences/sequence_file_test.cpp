@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sequence files: what is right is understood, and what is wrong is refused with its line. The last tests fly
 // through the canyon, if its content was fetched.
+#include <sys/wait.h>
 #include <cmath>
 #include <cstdlib>
-#include <sys/wait.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -3,9 +3,9 @@
 // where it is used, and what is wrong is refused with its line.
 #include <cmath>
 
-#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "layers/effects.h"
 #include "sequences/image_io.h"

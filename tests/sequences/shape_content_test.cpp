@@ -6,9 +6,9 @@
 #include <array>
 #include <map>
 
-#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "sequences/sequence.h"
 #include "tests/sequences/temporary_folder.h"

@@ -10,9 +10,9 @@
 #include <map>
 #include <optional>
 
-#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "sequences/warp_objects.h"
 #include "sequences/warp_quality.h"

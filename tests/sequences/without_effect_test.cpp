@@ -5,9 +5,9 @@
 #include <map>
 #include <set>
 
-#include <glm/geometric.hpp>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "sequences/image_io.h"
 #include "sequences/results.h"

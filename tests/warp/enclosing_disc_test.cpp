@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "tests/support/correspondences.h"
 

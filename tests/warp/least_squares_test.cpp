@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "tests/support/correspondences.h"
 

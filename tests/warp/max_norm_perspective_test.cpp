@@ -2,8 +2,8 @@
 #include <cmath>
 #include <string>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "tests/support/correspondences.h"
 #include "tests/support/planted.h"

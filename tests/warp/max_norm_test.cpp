@@ -6,8 +6,8 @@
 #include <limits>
 #include <string>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "tests/support/correspondences.h"
 #include "tests/support/planted.h"

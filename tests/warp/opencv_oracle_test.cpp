@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 #include <opencv2/calib3d.hpp>
 #include <opencv2/core.hpp>
 

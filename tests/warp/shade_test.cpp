@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
-#include <gtest/gtest.h>
 
 #include "tests/support/correspondences.h"
 #include "warp/conditioning.h"
@@ -132,8 +132,8 @@ TEST(FitShade, AtRestIsTheIdentity) {
 // points stands in.
 TEST(FitShade, ACornerBehindTheEyeFallsBackToAffine) {
   const auto points = box({0, 0, -2}, {1.5, 1.5, 0.2});
-  const dmat4 turned = glm::translate(dmat4(1), dvec3(0, 0, -0.6)) * glm::rotate(dmat4(1), 1.5, dvec3(0, 1, 0)) *
-                       glm::translate(dmat4(1), dvec3(0, 0, 2));
+  const dmat4 turned = glm::translate(dmat4(1), dvec3(0, 0, -0.6)) *
+                       glm::rotate(dmat4(1), 1.5, dvec3(0, 1, 0)) * glm::translate(dmat4(1), dvec3(0, 0, 2));
   const LayerState then = state_of(points), now = state_of(moved(points, turned));
   Correspondences matched;  // correspond() would have left out the points behind the eye
   const auto all = match(then, now);

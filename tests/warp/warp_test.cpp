@@ -6,8 +6,8 @@
 #include <limits>
 #include <set>
 
-#include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <glm/geometric.hpp>
 
 #include "tests/support/correspondences.h"
 
