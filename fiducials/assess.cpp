@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "fiducials/fiducials.h"
-#include "fiducials/shade.h"
-#include "fiducials/visibility.h"
+#include "fiducials/shade_drift.h"
+#include "fiducials/cut_sides.h"
 
 namespace talisman::fiducials {
 namespace {

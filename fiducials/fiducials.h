@@ -4,14 +4,14 @@
 /// How wrong is the old sprite, warped, for the frame now? [LS97 5]
 ///
 /// - Geometric: F = maxᵢ ‖pᵢ - W p̂ᵢ‖, pixels, best 0 [LS97 5.1]; where a sprite holds shadows, highlights or
-///   reflections, plus how far those have run over the surface (fiducials/shade.h): the triangle inequality
+///   reflections, plus how far those have run over the surface (fiducials/shade_drift.h): the triangle inequality
 ///   makes the sum a bound of their displacement on the display.
 /// - Photometric: F = maxᵢ ‖Cᵢ - W_C Ĉᵢ‖ of the shaded characteristic points, linear light, best 0; and the
 ///   angle by which a light has moved about the layer, radians, best 0 [LS97 5.2], fiducials/photometric.h.
 /// - Sampling: singular values of the Jacobian of the map from sprite to display: how many display pixels one
 ///   texel is stretched or squeezed to; no unit, best 1 [LS97 5.3].
 /// - Visibility: how far a side at which the sprite was cut off has come into view, pixels, best 0,
-///   fiducials/visibility.h; and how large a side of the layer has turned to the eye, pixels, best 0,
+///   fiducials/cut_sides.h; and how large a side of the layer has turned to the eye, pixels, best 0,
 ///   fiducials/turned_faces.h [LS97 5.4].
 ///
 /// No figure is ever non-finite: what is unknown or unbounded is warp::kHugePx.
@@ -82,7 +82,7 @@ struct TurnedFaces {
 };
 
 /// How far shadows, highlights and mirrored pictures have run over a surface since it was drawn
-/// (fiducials/shade.h). Already added to Geometric::px of the same report.
+/// (fiducials/shade_drift.h). Already added to Geometric::px of the same report.
 struct ShadeMotion {
   bool computed = false;
   std::string_view why_not = "";

@@ -10,7 +10,7 @@
 /// not run that scene in the same time (tests/bench/effect_builds).
 ///
 /// A scene that calls for an effect that the build lacks is refused before the first frame
-/// (sequences/missing_effects.h); what the libraries draw of it then is not defined.
+/// (sequences/commands/missing_effects.h); what the libraries draw of it then is not defined.
 
 #include <array>
 #include <cstddef>

@@ -13,7 +13,7 @@
 #include <benchmark/benchmark.h>
 
 #include "layers/layer.h"
-#include "sequences/layer_planning.h"
+#include "sequences/pipeline/layer_planning.h"
 #include "tests/support/fleet.h"
 #include "tests/support/scenes.h"
 

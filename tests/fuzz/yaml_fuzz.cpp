@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "sequences/yaml_reader.h"
+#include "sequences/content/yaml_reader.h"
 
 namespace {
 

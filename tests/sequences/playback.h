@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "sequences/sequence.h"
-#include "sequences/step.h"
+#include "sequences/content/sequence.h"
+#include "sequences/pipeline/step.h"
 
 namespace talisman::tests {
 

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-#include "sequences/sequence.h"
+#include "sequences/content/sequence.h"
 #include "tests/sequences/room_show.h"
 
 namespace talisman::tests {

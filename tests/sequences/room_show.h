@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "sequences/step.h"
+#include "sequences/pipeline/step.h"
 #include "tests/support/room.h"
 
 namespace talisman::tests {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "sequences/step.h"
+#include "sequences/pipeline/step.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {

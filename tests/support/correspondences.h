@@ -2,14 +2,14 @@
 #pragma once
 
 /// Matched points for tests and benchmarks: the realistic workload, which the tool's experiments share
-/// (sequences/point_workload.h), and the hard cases, each defined once.
+/// (sequences/experiments/warps/point_workload.h), and the hard cases, each defined once.
 
 #include <cstdint>
 #include <functional>
 #include <string>
 #include <vector>
 
-#include "sequences/point_workload.h"
+#include "sequences/experiments/warps/point_workload.h"
 
 namespace talisman::tests {
 

@@ -3,8 +3,8 @@
 
 /// Small workloads as sequences, for what runs on whole sequences.
 
-#include "sequences/sequence.h"
-#include "sequences/without_effect.h"
+#include "sequences/content/sequence.h"
+#include "sequences/experiments/without_effect.h"
 
 namespace talisman::tests {
 

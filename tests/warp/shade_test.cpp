@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "warp/shade.h"
+#include "warp/quadrilateral.h"
 
 #include <cmath>
 #include <vector>

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fiducials/cut_sides.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "layers/outline.h"
+
+namespace talisman::fiducials {
+namespace {
+
+using layers::LayerState;
+using layers::RectD;
+using layers::SpritePlacement;
+using warp::Warp;
+
+/// Less than this is rounding: the side has not moved in.
+constexpr double kRoundingPx = 1e-6;
+
+struct Side {
+  dvec2 from, to;
+  dvec2 inside;  ///< the opposite side's middle: tells which half-plane is the outer one
+};
+
+/// The cut sides as segments on the display at the instant of rendering.
+layers::InlineVector<Side, 4> cut_sides(const SpritePlacement& placement) {
+  const double w = placement.size_px.x, h = placement.size_px.y;
+  const layers::Affine2& screen = placement.screen_from_sprite;
+  layers::InlineVector<Side, 4> sides;
+  const auto add = [&](bool cut, dvec2 from, dvec2 to, dvec2 inside) {
+    if (cut) sides.push_back({screen(from), screen(to), screen(inside)});
+  };
+  add(placement.clipped.left, {0, 0}, {0, h}, {w, h / 2});
+  add(placement.clipped.right, {w, 0}, {w, h}, {0, h / 2});
+  add(placement.clipped.top, {0, 0}, {w, 0}, {w / 2, h});
+  add(placement.clipped.bottom, {0, h}, {w, h}, {w / 2, 0});
+  return sides;
+}
+
+/// The part of the display that the layer may cover.
+RectD visible_rect(const LayerState& state) {
+  const RectD display{
+      {0, 0}, {static_cast<double>(state.view.display_px.x), static_cast<double>(state.view.display_px.y)}};
+  return intersection(display, state.screen_bounds_px);
+}
+
+struct Depth {
+  double px = 0;
+  dvec2 where_px{0, 0};
+};
+
+Depth depth_beyond(const Side& side, const RectD& visible) {
+  const dvec2 centre = (visible.lo + visible.hi) / 2.0;
+  const double length = glm::length(side.to - side.from);
+  if (visible.empty() || !(length > 0)) return {0, centre};
+  const dvec2 along = (side.to - side.from) / length;
+  dvec2 outward{-along.y, along.x};
+  if (glm::dot(outward, side.inside - side.from) > 0) outward = -outward;
+  layers::Polygon2 uncovered{
+      visible.lo, {visible.hi.x, visible.lo.y}, visible.hi, {visible.lo.x, visible.hi.y}};
+  uncovered = layers::clip_to_half_plane(uncovered, outward, glm::dot(outward, side.from));
+  uncovered = layers::clip_to_half_plane(uncovered, along, glm::dot(along, side.from));
+  uncovered = layers::clip_to_half_plane(uncovered, -along, -glm::dot(along, side.to));
+  Depth deepest{0, centre};
+  for (const dvec2& p : uncovered) {
+    const double px = glm::dot(outward, p - side.from);
+    if (px > deepest.px) deepest = {px, p};
+  }
+  return deepest;
+}
+
+/// Beyond the horizon of a perspective warp nothing is known: all that is visible counts as uncovered.
+Depth depth_now(const Side& side, const Warp& warp, const RectD& visible) {
+  for (const dvec2& p : {side.from, side.to, side.inside})
+    if (!(warp.denominator(p) > 0))
+      return {glm::length(visible.hi - visible.lo), (visible.lo + visible.hi) / 2.0};
+  return depth_beyond({warp(side.from), warp(side.to), warp(side.inside)}, visible);
+}
+
+Visibility not_computed(std::string_view why) {
+  Visibility v;
+  v.why_not = why;
+  return v;
+}
+
+}  // namespace
+
+Visibility visibility_of(const LayerState& then, const LayerState& now, const SpritePlacement& placement,
+                         const Warp& warp) {
+  if (placement.empty()) return not_computed("nothing was drawn");
+  if (!placement.clipped.any()) return not_computed("no side of the sprite was cut off");
+  const RectD visible_then = visible_rect(then), visible_now = visible_rect(now);
+  if (visible_now.empty()) return not_computed("the layer is out of view");
+  Visibility result;
+  result.computed = true;
+  result.where_px = (visible_now.lo + visible_now.hi) / 2.0;
+  for (const Side& side : cut_sides(placement)) {
+    const Depth deepest = depth_now(side, warp, visible_now);
+    const double gained = deepest.px - depth_beyond(side, visible_then).px;
+    if (gained > std::fmax(result.uncovered_px, kRoundingPx)) {
+      result.uncovered_px = gained;
+      result.where_px = deepest.where_px;
+    }
+  }
+  return result;
+}
+
+}  // namespace talisman::fiducials

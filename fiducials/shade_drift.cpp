@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fiducials/shade_drift.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+#include "layers/built_effects.h"
+#include "layers/clip.h"
+
+namespace talisman::fiducials {
+
+namespace {
+
+using layers::dmat4;
+using layers::dvec3;
+using layers::dvec4;
+using layers::LayerState;
+using layers::ShadeTrace;
+
+/// Effects whose traces move over a surface.
+constexpr bool kAnyTrace = layers::is_built(layers::Effect::ShadowMap) ||
+                           layers::is_built(layers::Effect::SpecularLayer) ||
+                           layers::is_built(layers::Effect::ReflectionMap);
+
+bool exists(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+
+/// Diagonal of that part of the receiver's bounds that is on the display.
+double extent_on_display(const LayerState& now) {
+  const layers::RectD display{{0, 0}, dvec2(now.view.display_px)};
+  const layers::RectD seen = layers::intersection(now.screen_bounds_px, display);
+  return std::hypot(seen.width(), seen.height());
+}
+
+/// Projects places in the receiver's space as it lies now.
+class Projector {
+ public:
+  explicit Projector(const LayerState& now)
+      : now_(now),
+        clip_from_receiver_(layers::clip_from_world(now.camera, now.view.display_px) *
+                            now.world_from_receiver),
+        view_(layers::view_half_spaces(now.camera.near_m, now.view.clip_margin, 0)) {}
+
+  struct Path {
+    double px = 0;
+    dvec2 end{0, 0};
+  };
+
+  /// The segment on the display, as far as it is in view.
+  Path path(const dvec3& from, const dvec3& to) const {
+    const dvec4 a = clip_from_receiver_ * dvec4(from, 1), b = clip_from_receiver_ * dvec4(to, 1);
+    double t0 = 0, t1 = 1;
+    for (const layers::HalfSpace& side : view_) {
+      const double da = side.distance(a), db = side.distance(b);
+      if (!(da >= 0) && !(db >= 0)) return {};
+      if (!(da >= 0)) t0 = std::max(t0, da / (da - db));
+      if (!(db >= 0)) t1 = std::min(t1, da / (da - db));
+    }
+    if (!(t0 < t1)) return {};
+    const dvec2 start = screen(a + t0 * (b - a)), end = screen(a + t1 * (b - a));
+    const double length = glm::distance(start, end);
+    return std::isfinite(length) ? Path{length, end} : Path{};
+  }
+
+ private:
+  dvec2 screen(const dvec4& clip) const { return layers::screen_from_clip(clip, now_.view.display_px); }
+
+  const LayerState& now_;
+  dmat4 clip_from_receiver_;
+  layers::ViewHalfSpaces view_;
+};
+
+void include(ShadeMotion& worst, double px, dvec2 where_px, int trace) {
+  if (!(px > worst.px)) return;
+  worst.px = px;
+  worst.where_px = where_px;
+  worst.trace = trace;
+}
+
+void add_trace(const Projector& projector, const LayerState& now, const ShadeTrace& then_trace,
+               const ShadeTrace& now_trace, int index, ShadeMotion& worst) {
+  if (!then_trace.on_receiver && !now_trace.on_receiver) return;
+  const std::size_t count = std::min(then_trace.places.size(), now_trace.places.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const dvec3 &from = then_trace.places[i], &to = now_trace.places[i];
+    const bool was = exists(from), is = exists(to);
+    if (was && is) {
+      if (from == to) continue;
+      const Projector::Path path = projector.path(from, to);
+      include(worst, path.px, path.end, index);
+    } else if (was != is) {
+      include(worst, extent_on_display(now), (now.screen_bounds_px.lo + now.screen_bounds_px.hi) / 2.0,
+              index);
+    }
+  }
+}
+
+}  // namespace
+
+ShadeMotion shade_motion(const LayerState& then, const LayerState& now) {
+  ShadeMotion motion;
+  if (!kAnyTrace || (then.traces.empty() && now.traces.empty())) {
+    motion.why_not = "no shadow, highlight or reflection in it moves by itself";
+    return motion;
+  }
+  if (!now.touches_display) {
+    motion.why_not = "out of view";
+    return motion;
+  }
+  motion.computed = true;
+  const Projector projector(now);
+  for (std::size_t i = 0; i < std::min(then.traces.size(), now.traces.size()); ++i)
+    add_trace(projector, now, then.traces[i], now.traces[i], static_cast<int>(i), motion);
+  if (then.traces.size() != now.traces.size())  // the receiver, or what it stands in, was not finite
+    include(motion, extent_on_display(now), now.screen_bounds_px.lo, -1);
+  return motion;
+}
+
+std::string_view name(ShadeTrace::Kind kind) {
+  switch (kind) {
+    case ShadeTrace::Kind::Shadow:
+      return "shadow";
+    case ShadeTrace::Kind::Highlight:
+      return "highlight";
+    case ShadeTrace::Kind::Reflection:
+      return "reflection";
+  }
+  return "?";
+}
+
+}  // namespace talisman::fiducials

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/commands/options.h"
+
+#include <array>
+#include <charconv>
+#include <utility>
+
+#include <glm/trigonometric.hpp>
+#include "regulator/budget.h"
+#include "sequences/commands/missing_effects.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+constexpr int kLargestDisplayPx = 16384;
+
+/// The value of a named choice, or an error that lists the choices.
+template <typename T, std::size_t N>
+T choice(const char* option, const std::string& text,
+         const std::array<std::pair<const char*, T>, N>& choices) {
+  std::string names;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    names += (names.empty() ? "" : ", ") + std::string(name);
+  }
+  throw InputError(std::string(option) + " is '" + text + "', must be one of " + names);
+}
+
+std::optional<int> whole_number(std::string_view text) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+/// "A<separator>B"; empty unless both are whole numbers.
+std::optional<std::pair<int, int>> two_numbers(const std::string& text, char separator) {
+  const std::size_t at = text.find(separator, 1);
+  if (at == std::string::npos) return std::nullopt;
+  const auto a = whole_number(std::string_view(text).substr(0, at));
+  const auto b = whole_number(std::string_view(text).substr(at + 1));
+  if (!a || !b) return std::nullopt;
+  return std::pair{*a, *b};
+}
+
+layers::ivec2 display_from(const std::string& text) {
+  const auto size = two_numbers(text, 'x');
+  if (!size || size->first < 1 || size->second < 1 || size->first > kLargestDisplayPx ||
+      size->second > kLargestDisplayPx)
+    throw InputError("--size is '" + text + "', must be WxH with both from 1 to " +
+                     std::to_string(kLargestDisplayPx));
+  return {size->first, size->second};
+}
+
+std::pair<int, int> frame_range_from(const std::string& text, int frames) {
+  const std::optional<int> single = whole_number(text);
+  const auto range =
+      single ? std::pair{*single, *single} : two_numbers(text, '-').value_or(std::pair{-1, -1});
+  if (range.first < 0 || range.second < range.first || range.second >= frames)
+    throw InputError("--frames is '" + text +
+                     "', must be A-B with 0 <= A <= B <= " + std::to_string(frames - 1));
+  return range;
+}
+
+/// Only Lookahead looks at frames that it could be wrong about: the oracle is a floor because it knows them.
+void apply_prediction(const CommandLine& line, regulator::RegulatorOptions& options) {
+  if (line.predict.empty()) return;
+  const auto prediction = regulator::prediction_from_name(line.predict);
+  if (!prediction) throw InputError("--predict is '" + line.predict + "', must be one of known, linear");
+  if (*prediction != regulator::Prediction::Known && options.policy != regulator::Policy::Lookahead)
+    throw InputError("--predict is '" + line.predict + "', but --policy is '" +
+                     std::string(regulator::name(options.policy)) + "', must be lookahead");
+  options.predict = *prediction;
+}
+
+void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& options) {
+  if (!line.policy.empty()) {
+    const auto policy = regulator::policy_from_name(line.policy);
+    if (!policy) {
+      std::string names;
+      for (const auto p : regulator::kAllPolicies)
+        names += (names.empty() ? "" : ", ") + std::string(regulator::name(p));
+      throw InputError("--policy is '" + line.policy + "', must be one of " + names);
+    }
+    options.policy = *policy;
+  }
+  if (line.geometric_px) options.geometric_px = *line.geometric_px;
+  if (line.photometric) options.photometric = *line.photometric;
+  if (line.light_angle_deg) options.light_angle_rad = glm::radians(*line.light_angle_deg);
+  if (line.turned_px) options.turned_px = *line.turned_px;
+  if (!line.color_warp.empty())
+    options.color_warp =
+        choice("--color-warp", line.color_warp, std::array{std::pair{"on", true}, std::pair{"off", false}});
+  if (line.hold) options.hold_frames = *line.hold;
+  if (line.lookahead) options.lookahead_frames = *line.lookahead;
+  if (line.budget_polygons) options.budget_polygons = *line.budget_polygons;
+  if (line.budget_pixels) options.budget_pixels = *line.budget_pixels;
+  if (line.budget_chunks) options.budget_chunks = *line.budget_chunks;
+  if (line.budget_ms) options.budget_ms = *line.budget_ms;
+  if (line.min_resolution) options.min_resolution = *line.min_resolution;
+  if (line.cutoff_px) options.cutoff_px = *line.cutoff_px;
+  apply_prediction(line, options);
+  if (options.policy == regulator::Policy::Budget && !regulator::is_limited(options))
+    throw InputError(
+        "--policy is 'budget', must come with --budget-polygons, --budget-pixels, --budget-chunks or "
+        "--budget-ms");
+  if (line.budget_gap && options.policy != regulator::Policy::Budget)
+    throw InputError("--budget-gap compares choices within a budget, but --policy is '" +
+                     std::string(regulator::name(options.policy)) + "', must be budget");
+  if (const std::string defect = regulator::first_defect(options); !defect.empty()) throw InputError(defect);
+}
+
+warp::Curve curve_from(const std::string& text) {
+  const std::optional<warp::Curve> curve = warp::curve_from_name(text);
+  if (!curve)
+    throw InputError("--warp is '" + text +
+                     "', must be a curve name such as trn, iso, so, aff, affi, per or per2");
+  return *curve;
+}
+
+double positive(const char* option, double value, double largest) {
+  if (!(value > 0 && value <= largest))
+    throw InputError(std::string(option) + " is " + std::to_string(value) + ", must be above 0 and at most " +
+                     std::to_string(largest));
+  return value;
+}
+
+/// Sprites are compressed where the sequence or the command line asks for it, and there are sprites.
+std::optional<chunker::CompressionOptions> compression_from(const CommandLine& line, const Sequence& sequence,
+                                                            regulator::Policy policy) {
+  const bool has_sprites = policy != regulator::Policy::Direct;
+  if (!line.compression) return has_sprites ? sequence.compression : std::nullopt;
+  const int quality = *line.compression;
+  if (quality < 0 || quality > 100)
+    throw InputError("--compression is " + std::to_string(quality) +
+                     ", must be a quality from 1 to 100, or 0 for none");
+  if (quality == 0) return std::nullopt;
+  if (!has_sprites) throw InputError("--compression needs sprites, but --policy is direct");
+  return chunker::CompressionOptions{quality};
+}
+
+}  // namespace
+
+ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {
+  ResolvedRun run;
+  Settings& settings = run.settings;
+  settings.regulator = sequence.regulator;
+  apply_regulator(line, settings.regulator);
+  settings.curve = curve_from(line.warp.empty() ? sequence.warp : line.warp);
+  settings.view.display_px = line.size.empty() ? sequence.display_px : display_from(line.size);
+  if (sequence.clip_margin) settings.view.clip_margin = *sequence.clip_margin;
+  settings.bound = line.bound.empty() ? sequence.bound
+                                      : choice("--bound", line.bound,
+                                               std::array{std::pair{"box8", layers::BoundKind::Box8},
+                                                          std::pair{"dop14", layers::BoundKind::Dop14},
+                                                          std::pair{"dop26", layers::BoundKind::Dop26}});
+  settings.explicit_order = sequence.explicit_order;
+  settings.cycles =
+      line.cycles.empty()
+          ? sequence.cycles
+          : choice("--cycles", line.cycles,
+                   std::array{std::pair{"merge", Cycles::Merge}, std::pair{"keep", Cycles::Keep}});
+  settings.compositor = line.compositor.empty()
+                            ? sequence.compositor
+                            : choice("--compositor", line.compositor,
+                                     std::array{std::pair{"talisman", Compositor::Talisman},
+                                                std::pair{"extended", Compositor::Extended}});
+  settings.extents = sequence.extents;
+  if (line.expected_reuse)
+    settings.extents.expected_reuse_frames = positive("--expected-reuse", *line.expected_reuse, 1e4);
+  settings.placement = sequence.placement;
+  if (line.resolution) settings.placement.resolution_scale = positive("--resolution", *line.resolution, 4);
+  if (!line.shading.empty())
+    settings.render.shading = choice(
+        "--shading", line.shading,
+        std::array{std::pair{"flat", chunker::Shading::Flat}, std::pair{"gouraud", chunker::Shading::Gouraud},
+                   std::pair{"phong", chunker::Shading::Phong}});
+  settings.compression = compression_from(line, sequence, settings.regulator.policy);
+  settings.fps = sequence.fps;
+  settings.frames = sequence.frames;
+  settings.budget_gap = line.budget_gap;
+
+  RunOptions& options = run.options;
+  options.plan_only = plan_only;
+  options.out = !line.out.empty() ? line.out : "out/" + sequence.name + (plan_only ? "-plan" : "");
+  options.first_frame = 0;
+  options.last_frame = sequence.frames - 1;
+  if (!line.frames.empty())
+    std::tie(options.first_frame, options.last_frame) = frame_range_from(line.frames, sequence.frames);
+  options.format = choice("--format", line.format,
+                          std::array{std::pair{"png", FrameFormat::Png}, std::pair{"exr", FrameFormat::Exr},
+                                     std::pair{"none", FrameFormat::None}});
+  options.progress =
+      choice("--progress", line.progress,
+             std::array{std::pair{"auto", ProgressKind::Auto}, std::pair{"bar", ProgressKind::Bar},
+                        std::pair{"plain", ProgressKind::Plain}, std::pair{"none", ProgressKind::None}});
+  options.video = line.video;
+  options.separate = line.separate;
+  options.overlay = line.overlay;
+  options.quality = line.quality;
+  options.resume = line.resume;
+  if (options.video && options.format == FrameFormat::None)
+    throw InputError("--video needs frames, but --format is none");
+  if (options.overlay && options.format != FrameFormat::Png)
+    throw InputError("--overlay is drawn on png frames, but --format is " + line.format);
+  if (line.threads < 0)
+    throw InputError("--threads is " + std::to_string(line.threads) + ", must be at least 0 (0: all cores)");
+  require_built_effects(sequence, settings);
+  return run;
+}
+
+}  // namespace talisman::sequences

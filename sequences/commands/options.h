@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The command line of `render` and `plan`, as it was typed, and how it overrides a sequence's own settings.
+/// The order of options never matters.
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "sequences/results/run.h"
+
+namespace talisman::sequences {
+
+/// Every option is empty where it was not given.
+struct CommandLine {
+  std::string sequence;
+  std::string out;     ///< empty: out/<name>, for plans out/<name>-plan
+  std::string frames;  ///< "A-B", "A" or empty: all; inclusive
+  std::string size;    ///< "WxH"
+  std::string policy, predict, warp, bound, cycles, compositor, shading, format = "png", progress = "auto";
+  std::optional<double> geometric_px, cutoff_px, budget_ms, min_resolution, expected_reuse, resolution;
+  std::optional<double> photometric, light_angle_deg, turned_px;
+  std::string color_warp;  ///< "on", "off"
+  std::optional<int> hold, lookahead;
+  std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says
+  std::optional<std::int64_t> budget_polygons, budget_pixels, budget_chunks;
+  bool budget_gap = false;
+  int threads = 0;  ///< 0: all cores
+  bool video = false, separate = false, overlay = false, quality = false, resume = false;
+};
+
+struct ResolvedRun {
+  Settings settings;
+  RunOptions options;
+};
+
+/// Checks every value and joins it with the sequence's defaults. Throws InputError that names option, value
+/// and rule, or the effect that the run calls for and this build lacks.
+ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only);
+
+}  // namespace talisman::sequences

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/content/asset_paths.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+
+namespace talisman::sequences {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string root_above(fs::path folder) {
+  for (std::error_code error; !folder.empty(); folder = folder.parent_path()) {
+    if (fs::exists(folder / "sequences" / "fetch-assets", error)) return folder.string();
+    if (folder == folder.root_path()) break;
+  }
+  return {};
+}
+
+std::string assets_folder() {
+  const char* chosen = std::getenv("TALISMAN_ASSETS");
+  return chosen && *chosen ? chosen : repository_root() + "/assets";
+}
+
+/// "gl-117-data" of "gl-117-data:/usr/share/…"; empty when the path names no package. Debian Policy 5.6.7:
+/// lower case letters, digits and + - . — so a package never leads out of the assets folder.
+std::string package_of(const std::string& path) {
+  const std::size_t colon = path.find(":/");
+  if (colon == std::string::npos || colon < 2) return {};
+  const std::string package = path.substr(0, colon);
+  const bool well_formed =
+      package.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789+-.") == std::string::npos;
+  return well_formed && package[0] != '.' ? package : std::string();
+}
+
+/// The name by which the tool's user knows a sequence file: that of its folder.
+std::string fetch_name(const std::string& sequence_file) {
+  const std::string folder = fs::absolute(sequence_file).parent_path().filename().string();
+  return sequence_file_of(folder).empty() ? sequence_file : folder;
+}
+
+}  // namespace
+
+std::string program_folder() {
+  std::error_code error;
+  return fs::read_symlink("/proc/self/exe", error).parent_path().string();
+}
+
+std::string repository_root() {
+  const std::string root = root_above(program_folder());
+  std::error_code error;
+  return root.empty() ? root_above(fs::current_path(error)) : root;
+}
+
+std::string resolve_asset(const std::string& path, const std::string& sequence_file, int line) {
+  std::error_code error;
+  const std::string package = package_of(path);
+  if (!package.empty()) {
+    const fs::path folder = fs::path(assets_folder()) / package;
+    const fs::path found = folder.string() + path.substr(package.size() + 1);
+    if (fs::is_regular_file(found, error)) return found.string();
+    if (fs::is_directory(folder, error))
+      throw InputError("'" + path + "' is not in package " + package + ", rule: a file of the package",
+                       sequence_file, line);
+    throw InputError("'" + path +
+                         "' is not there, rule: content is fetched first, by sequences/fetch-assets " +
+                         fetch_name(sequence_file),
+                     sequence_file, line);
+  }
+  const fs::path found =
+      fs::path(path).is_absolute() ? fs::path(path) : fs::path(sequence_file).parent_path() / path;
+  if (!fs::is_regular_file(found, error))
+    throw InputError("'" + path + "' is not there, rule: a file, as package:/path or relative to this file",
+                     sequence_file, line);
+  return found.string();
+}
+
+std::string sequence_file_of(const std::string& name) {
+  const std::string root = repository_root();
+  if (root.empty() || name.empty() || name.find("..") != std::string::npos) return {};
+  const std::size_t slash = name.find('/');
+  const std::string stem = slash == std::string::npos ? name + "/" + name : name;
+  const std::string file = root + "/sequences/" + stem + ".yaml";
+  std::error_code error;
+  return fs::is_regular_file(file, error) ? file : std::string();
+}
+
+std::vector<std::string> sequence_names() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& folder : fs::directory_iterator(repository_root() + "/sequences", error)) {
+    if (!folder.is_directory()) continue;
+    const std::string name = folder.path().filename().string();
+    for (const auto& file : fs::directory_iterator(folder.path(), error)) {
+      const std::string stem = file.path().stem().string();
+      if (file.path().extension() != ".yaml") continue;
+      names.push_back(stem == name ? name : name + "/" + stem);
+    }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+#include "sequences/content/scene_recipe.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+constexpr double kOrbitTurn_s = 5;  // one turn of the orbiting camera: 120 frames at 24 per second
+constexpr double kOrbitElevation_rad = 0.3;
+constexpr double kOrbitFov_rad = 0.7;
+constexpr double kOrbitRoom = 1.08;  // the sphere around all parts fills the picture but for this
+
+int add_node(layers::Scene& scene, const std::string& name, int parent, const layers::Transform& local = {}) {
+  scene.nodes.push_back({name, parent, local});
+  return static_cast<int>(scene.nodes.size()) - 1;
+}
+
+/// The node below which a motion takes place; -1: the world.
+int carrier_of(const BuiltScene& built, const Motion& motion) {
+  if (motion.carried_by.empty()) return -1;
+  const auto found = built.carriers.find(motion.carried_by);
+  if (found == built.carriers.end())
+    throw InputError("carried_by is '" + motion.carried_by + "', rule: the name of a shape before it",
+                     motion.file, motion.line);
+  return found->second;
+}
+
+/// The node (with one below it for a spin, so that both motions add up) that carries something; returns the
+/// lowest.
+int add_motion(BuiltScene& built, const std::string& name, const Motion& motion) {
+  layers::Scene& scene = built.scene;
+  int node = add_node(scene, name, carrier_of(built, motion), motion.rest);
+  if (motion.flight) scene.tracks.push_back({node, *motion.flight});
+  if (!motion.spin) return node;
+  node = add_node(scene, "spin", node);
+  scene.tracks.push_back({node, *motion.spin});
+  return node;
+}
+
+template <typename T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+int shifted(int index, std::size_t by) { return index < 0 ? index : index + static_cast<int>(by); }
+
+/// Meshes, textures and materials of a model are stored once, however many instances there are.
+struct SharedContent {
+  std::size_t meshes, materials;
+};
+
+SharedContent add_content(layers::Scene& scene, const layers::Scene& model, bool two_sided) {
+  const SharedContent at{scene.meshes.size(), scene.materials.size()};
+  for (layers::Material material : model.materials) {
+    material.texture = shifted(material.texture, scene.textures.size());
+    material.texture2 = shifted(material.texture2, scene.textures.size());
+    material.two_sided |= two_sided;
+    scene.materials.push_back(std::move(material));
+  }
+  append(scene.meshes, model.meshes);
+  append(scene.textures, model.textures);
+  return at;
+}
+
+/// Nodes, skins, tracks and parts of one instance below `carrier`. Lights and cameras of a model are left
+/// out: a sequence has its own.
+void add_instance(BuiltScene& built, const ImportedModel& model, const SharedContent& content, int carrier,
+                  const std::string& name) {
+  layers::Scene& scene = built.scene;
+  const std::size_t nodes = scene.nodes.size(), skins = scene.skins.size();
+  for (layers::Node node : model.scene.nodes) {
+    node.parent = node.parent < 0 ? carrier : shifted(node.parent, nodes);
+    scene.nodes.push_back(std::move(node));
+  }
+  for (layers::Skin skin : model.scene.skins) {
+    for (int& joint : skin.joints) joint = shifted(joint, nodes);
+    scene.skins.push_back(std::move(skin));
+  }
+  for (layers::Track track : model.scene.tracks) {
+    track.node = shifted(track.node, nodes);
+    scene.tracks.push_back(std::move(track));
+  }
+  for (layers::Part part : model.scene.parts) {
+    part.name = name + "/" + part.name;
+    part.node = shifted(part.node, nodes);
+    part.mesh = shifted(part.mesh, content.meshes);
+    part.material = shifted(part.material, content.materials);
+    part.skin = shifted(part.skin, skins);
+    scene.parts.push_back(std::move(part));
+  }
+  for (const LayerTag& tag : model.layer_tags)
+    built.layer_tags.push_back({shifted(tag.node, nodes), tag.layer});
+}
+
+/// Turned, scaled and, if wished, centred.
+layers::Transform fitting(const ModelRecipe& recipe, const layers::Scene& model) {
+  layers::Transform fit;
+  fit.rotation = glm::dquat(glm::radians(recipe.turn_deg));
+  const layers::WorldBounds bounds = bounds_of_scene(model);
+  double scale = recipe.scale;
+  if (recipe.length_m && !bounds.empty()) {
+    const layers::dvec3 size = bounds.hi - bounds.lo;
+    const double longest = std::max({size.x, size.y, size.z});
+    if (longest > 0) scale = *recipe.length_m / longest;
+  }
+  fit.scale = layers::dvec3(scale);
+  if (recipe.centered && !bounds.empty())
+    fit.translation = fit.rotation * (-0.5 * scale * (bounds.lo + bounds.hi));
+  return fit;
+}
+
+void add_model(BuiltScene& built, const ModelRecipe& recipe) {
+  const ImportedModel model = import_model(recipe.file);
+  for (const std::string& warning : model.warnings) built.warnings.push_back(recipe.file + ": " + warning);
+  const SharedContent content = add_content(built.scene, model.scene, recipe.two_sided);
+  const layers::Transform fit = fitting(recipe, model.scene);
+  for (const ModelInstance& instance : recipe.instances) {
+    const int carrier = add_motion(built, instance.name, instance.motion);
+    add_instance(built, model, content, add_node(built.scene, "fit", carrier, fit), instance.name);
+  }
+}
+
+/// Named as textures of models are: where the content lies differs from machine to machine, and results name
+/// it.
+int add_texture(layers::Scene& scene, const std::string& file) {
+  scene.textures.push_back(read_texture(file));
+  scene.textures.back().name = std::filesystem::path(file).filename().string();
+  return static_cast<int>(scene.textures.size()) - 1;
+}
+
+void add_shape(BuiltScene& built, const ShapeRecipe& recipe) {
+  layers::Scene& scene = built.scene;
+  layers::Material material = recipe.content.material;
+  const ShapeContent& content = recipe.content;
+  if (!content.texture_file.empty()) material.texture = add_texture(scene, content.texture_file);
+  if (!content.second_texture_file.empty())
+    material.texture2 = add_texture(scene, content.second_texture_file);
+  const int mesh = static_cast<int>(scene.meshes.size());
+  scene.meshes.push_back(shape_mesh(recipe.content));
+  scene.meshes.back().name = material.name;
+  for (const ModelInstance& instance : recipe.instances) {
+    const int node = add_motion(built, instance.name, instance.motion);
+    if (!built.carriers.emplace(instance.name, node).second)
+      throw InputError("two shapes are called '" + instance.name + "', rule: names are unique",
+                       instance.motion.file, instance.motion.line);
+    scene.parts.push_back({instance.name, node, mesh, static_cast<int>(scene.materials.size()), -1});
+  }
+  scene.materials.push_back(std::move(material));
+}
+
+void add_camera(BuiltScene& built, const CameraRecipe& recipe) {
+  layers::Scene& scene = built.scene;
+  layers::Camera camera;
+  camera.name = "camera";
+  camera.node = add_motion(built, "camera", recipe.motion);
+  camera.fov_y_rad = glm::radians(recipe.fov_deg);
+  camera.near_m = recipe.near_m;
+  camera.far_m = recipe.far_m;
+  scene.cameras.push_back(camera);
+}
+
+void add_lights(BuiltScene& built, const SceneRecipe& recipe) {
+  for (std::size_t i = 0; i < recipe.lights.size(); ++i) {
+    layers::Light light = recipe.lights[i];
+    const std::string name = light.name.empty() ? "light " + std::to_string(i) : light.name;
+    if (recipe.light_motions[i]) light.node = add_motion(built, name, *recipe.light_motions[i]);
+    built.scene.lights.push_back(std::move(light));
+  }
+}
+
+// --- Where a file has no camera and no light ---
+
+void add_orbit(layers::Scene& scene) {
+  const layers::WorldBounds bounds = bounds_of_scene(scene);
+  const layers::dvec3 center = bounds.empty() ? layers::dvec3(0) : 0.5 * (bounds.lo + bounds.hi);
+  const double found = bounds.empty() ? 0 : 0.5 * glm::length(bounds.hi - bounds.lo);
+  const double radius = found > 0 ? found : 1;
+  const double distance = kOrbitRoom * radius / std::sin(kOrbitFov_rad / 2);
+  layers::Transform pivot, arm;
+  pivot.translation = center;
+  arm.rotation = glm::angleAxis(-kOrbitElevation_rad, layers::dvec3(1, 0, 0));
+  arm.translation = arm.rotation * layers::dvec3(0, 0, distance);
+  const int pivot_node = add_node(scene, "orbit", -1, pivot);
+  layers::Camera camera;
+  camera.name = "orbit";
+  camera.node = add_node(scene, "orbit camera", pivot_node, arm);
+  camera.fov_y_rad = kOrbitFov_rad;
+  camera.near_m = 0.5 * (distance - radius);
+  camera.far_m = 2 * (distance + radius);
+  scene.tracks.push_back({pivot_node, layers::SpinTrack{{0, 1, 0}, 2 * M_PI / kOrbitTurn_s}});
+  scene.cameras.push_back(camera);
+}
+
+void add_daylight(layers::Scene& scene) {
+  layers::Light sun, ambient;
+  sun.name = "sun";
+  sun.kind = layers::Light::Kind::Directional;
+  sun.direction = {-0.45, -0.75, -0.5};
+  sun.color = layers::vec3(0.85f);
+  ambient.name = "ambient";
+  ambient.kind = layers::Light::Kind::Ambient;
+  ambient.color = layers::vec3(0.25f);
+  scene.lights.insert(scene.lights.end(), {ambient, sun});
+}
+
+}  // namespace
+
+layers::WorldBounds bounds_of_scene(const layers::Scene& scene) {
+  constexpr int kSteps = 8;
+  layers::WorldBounds bounds;
+  const double duration = scene.duration_s();
+  for (int k = 0; k <= (duration > 0 ? kSteps : 0); ++k) {
+    const layers::SceneFrame frame = scene.at(duration * k / kSteps);
+    for (const layers::Part& part : scene.parts)
+      for (const layers::dvec3& p : layers::world_positions(frame, part)) {
+        bounds.lo = glm::min(bounds.lo, p);
+        bounds.hi = glm::max(bounds.hi, p);
+      }
+  }
+  return bounds;
+}
+
+void add_default_view(layers::Scene& scene) {
+  if (scene.cameras.empty()) add_orbit(scene);
+  if (scene.lights.empty()) add_daylight(scene);
+}
+
+BuiltScene build_scene(const SceneRecipe& recipe) {
+  BuiltScene built;
+  built.scene.background = recipe.background;
+  if (recipe.sky) add_sky(built.scene, *recipe.sky);
+  if (recipe.terrain) add_terrain(built.scene, *recipe.terrain);
+  for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);
+  for (const ModelRecipe& model : recipe.models) add_model(built, model);
+  if (recipe.camera) add_camera(built, *recipe.camera);
+  add_lights(built, recipe);
+  add_default_view(built.scene);
+  return built;
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/content/sequence.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+
+#include "sequences/content/asset_paths.h"
+#include "sequences/content/sequence_file.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+constexpr int kOrbitFrames = 120;   // one turn, see add_default_view
+constexpr double kMaxModel_s = 20;  // longer animations are cut
+
+bool is_yaml(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension == ".yaml" || extension == ".yml";
+}
+
+/// The layer tag of the nearest tagged node above (or at) each node; empty: none.
+std::vector<std::string> tags_of_nodes(const layers::Scene& scene, const std::vector<LayerTag>& tags) {
+  std::vector<std::string> tag_of(scene.nodes.size());
+  for (const LayerTag& tag : tags) tag_of[tag.node] = tag.layer;
+  for (std::size_t i = 0; i < tag_of.size(); ++i)
+    if (tag_of[i].empty() && scene.nodes[i].parent >= 0) tag_of[i] = tag_of[scene.nodes[i].parent];
+  return tag_of;
+}
+
+/// Layers that the model's author named, then what the moving and top-level nodes give for the rest.
+std::vector<layers::LayerSpec> specs_of_model(const layers::Scene& scene, const std::vector<LayerTag>& tags) {
+  const std::vector<std::string> tag_of = tags_of_nodes(scene, tags);
+  std::vector<layers::LayerSpec> specs;
+  std::map<std::string, std::size_t> spec_of;
+  std::vector<std::string> tagged_parts;
+  for (const layers::Part& part : scene.parts) {
+    const std::string& layer = tag_of[part.node];
+    if (layer.empty()) continue;
+    const auto [entry, is_new] = spec_of.emplace(layer, specs.size());
+    if (is_new) specs.push_back({layer, {}, layers::OrderGroup::Normal, {}});
+    std::string glob = part.name;
+    std::replace(glob.begin(), glob.end(), '*', '?');
+    specs[entry->second].part_globs.push_back(glob);
+    tagged_parts.push_back(glob);
+  }
+  for (layers::LayerSpec& spec : layers::default_layer_specs(scene)) {
+    std::erase_if(spec.part_globs, [&](const std::string& glob) {
+      return std::find(tagged_parts.begin(), tagged_parts.end(), glob) != tagged_parts.end();
+    });
+    while (spec_of.count(spec.name)) spec.name += "'";
+    if (!spec.part_globs.empty()) specs.push_back(std::move(spec));
+  }
+  return specs;
+}
+
+void finish(Sequence& sequence, BuiltScene built, std::vector<layers::LayerSpec> specs) {
+  sequence.layers = layers::factor(built.scene, specs);
+  sequence.layer_specs = std::move(specs);
+  sequence.warnings.insert(sequence.warnings.end(), built.warnings.begin(), built.warnings.end());
+  if (const int parts = sequence.layers.unassigned_parts; parts > 0)
+    sequence.warnings.push_back(parts == 1 ? "1 part is taken by no layer and is not drawn"
+                                           : std::to_string(parts) +
+                                                 " parts are taken by no layer and are not drawn");
+  sequence.scene = std::make_shared<const layers::Scene>(std::move(built.scene));
+}
+
+/// The place of the layer that a defect speaks of; the defect begins with "layer 'NAME'".
+[[noreturn]] void fail_at_layer(const SequenceFile& file, const std::string& defect) {
+  for (const LayerEntry& entry : file.layers)
+    if (defect.rfind("layer '" + entry.spec.name + "':", 0) == 0)
+      throw InputError(defect, entry.file, entry.line);
+  throw InputError(defect, file.settings.file);
+}
+
+Sequence load_yaml(const std::string& path) {
+  SequenceFile file = read_sequence_file(path);
+  BuiltScene built = build_scene(file.recipe);
+  if (const std::string defect = layers::first_defect(built.scene); !defect.empty())
+    throw InputError(defect, path);
+  if (built.scene.parts.empty())
+    throw InputError("shows nothing, rule: at least one of shapes, models, terrain and sky", path);
+  std::vector<layers::LayerSpec> specs;
+  for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
+  if (specs.empty()) specs = specs_of_model(built.scene, built.layer_tags);
+  Sequence sequence = std::move(file.settings);
+  finish(sequence, std::move(built), std::move(specs));
+  if (!sequence.layers.defect.empty()) {
+    file.settings.file = path;
+    fail_at_layer(file, sequence.layers.defect);
+  }
+  sequence.explicit_order = resolve_layer_pairs(file.order, sequence.layers.layers);
+  return sequence;
+}
+
+Sequence load_model(const std::string& path) {
+  ImportedModel model = import_model(path);
+  Sequence sequence;
+  sequence.name = std::filesystem::path(path).stem().string();
+  sequence.file = path;
+  const double duration = std::min(model.scene.duration_s(), kMaxModel_s);
+  sequence.frames =
+      duration > 0 ? std::max(1, static_cast<int>(std::lround(duration * sequence.fps))) : kOrbitFrames;
+  add_default_view(model.scene);
+  std::vector<layers::LayerSpec> specs = specs_of_model(model.scene, model.layer_tags);
+  finish(sequence, {std::move(model.scene), {}, std::move(model.warnings)}, std::move(specs));
+  if (!sequence.layers.defect.empty()) throw InputError(sequence.layers.defect, path);
+  return sequence;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
+  return text;
+}
+
+}  // namespace
+
+Sequence load_sequence(const std::string& name_or_path) {
+  // A name means the same in every working directory; a file that happens to have it is ./NAME.
+  if (const std::string shipped = sequence_file_of(name_or_path); !shipped.empty()) return load_yaml(shipped);
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(name_or_path, error))
+    throw InputError("'" + name_or_path +
+                     "' is no sequence and no file; sequences are: " + joined(known_sequences()));
+  return is_yaml(name_or_path) ? load_yaml(name_or_path) : load_model(name_or_path);
+}
+
+std::vector<std::string> known_sequences() { return sequence_names(); }
+
+}  // namespace talisman::sequences

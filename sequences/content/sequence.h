@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A sequence: a scene, its layers and how it is filmed. It is read from a YAML file under sequences/<name>/
+/// (or the user's own) or made up around a bare model file (one layer per moving or top-level node, an
+/// orbiting camera if it has none).
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "chunker/compression.h"
+#include "layers/layer.h"
+#include "layers/polyhedron.h"
+#include "layers/sprite_transform.h"
+#include "regulator/plan.h"
+#include "sequences/files/errors.h"
+#include "sequences/pipeline/frame_order.h"
+
+namespace talisman::sequences {
+
+struct Sequence {
+  std::string name;  ///< "canyon", or the model's file name without extension
+  std::string file;  ///< what was read
+  int frames = 0;    ///< ≥ 1
+  double fps = 24;   ///< > 0; frame f is at f / fps seconds
+  layers::ivec2 display_px{1024, 1024};
+  std::shared_ptr<const layers::Scene> scene;
+  std::vector<layers::LayerSpec> layer_specs;  ///< what the author, or the model, asks for
+  layers::LayerSet layers;                     ///< layers::factor of both
+  std::vector<layers::ExplicitPair> explicit_order;
+  Cycles cycles = Cycles::Merge;
+  Compositor compositor = Compositor::Talisman;
+  layers::BoundKind bound = layers::BoundKind::Box8;
+  layers::ExtentOptions extents;
+  layers::PlacementOptions placement;
+  std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are
+  std::optional<double> clip_margin;                       ///< View::clip_margin where the file sets it
+  regulator::RegulatorOptions regulator;  ///< defaults of the sequence; the command line overrides
+  std::string warp = "aff";               ///< curve name
+  std::vector<std::string> warnings;      ///< missing textures and the like, one line each
+};
+
+/// Reads a sequence by name ("canyon", also "canyon/background" for a variant file
+/// sequences/canyon/background.yaml), by the path of a YAML file, or a model by the path of any file the
+/// importer reads. Throws InputError.
+Sequence load_sequence(const std::string& name_or_path);
+
+/// Names of the sequences that ship with the tool.
+std::vector<std::string> known_sequences();
+
+}  // namespace talisman::sequences

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/experiments/factoring/report.h"
+
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "sequences/experiments/factoring/pictures.h"
+#include "sequences/files/image_io.h"
+#include "sequences/pictures/page.h"
+
+namespace talisman::sequences {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string exact(double value) {
+  if (!std::isfinite(value)) return "";
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, "%.9g", value);
+  return buffer;
+}
+
+/// A number of a row, named once for CSV and JSON.
+template <typename Row>
+struct Column {
+  const char* name;
+  double (*value)(const Row&);
+};
+
+constexpr Column<PictureLoss> kLossColumns[] = {
+    {"rms_code_values", [](const PictureLoss& l) { return rms_code_values(summarize(l.frames).mean); }},
+    {"max_code_values",
+     [](const PictureLoss& l) { return double(summarize(l.frames).worst.max_difference); }},
+    {"psnr_db", [](const PictureLoss& l) { return summarize(l.frames).mean.psnr_db; }},
+    {"ssim", [](const PictureLoss& l) { return summarize(l.frames).mean.ssim; }},
+    {"flip", [](const PictureLoss& l) { return summarize(l.frames).mean.flip; }},
+    {"changed_pixels", [](const PictureLoss& l) { return summarize(l.frames).mean.changed_pixels; }},
+};
+
+constexpr Column<FactoredLayer> kLayerColumns[] = {
+    {"shade_layers", [](const FactoredLayer& l) { return double(l.shade_layers); }},
+    {"frames_shown", [](const FactoredLayer& l) { return double(l.frames_shown); }},
+    {"predicted_rms", [](const FactoredLayer& l) { return l.check.predicted.rms(); }},
+    {"predicted_max", [](const FactoredLayer& l) { return l.check.predicted.largest; }},
+    {"by_formula_rms", [](const FactoredLayer& l) { return l.check.by_formula.rms(); }},
+    {"by_formula_max", [](const FactoredLayer& l) { return l.check.by_formula.largest; }},
+    {"measured_rms", [](const FactoredLayer& l) { return l.check.measured.rms(); }},
+    {"measured_max", [](const FactoredLayer& l) { return l.check.measured.largest; }},
+    {"unexplained_rms", [](const FactoredLayer& l) { return l.check.unexplained.rms(); }},
+    {"unexplained_max", [](const FactoredLayer& l) { return l.check.unexplained.largest; }},
+    {"elsewhere_rms", [](const FactoredLayer& l) { return l.check.elsewhere.rms(); }},
+    {"elsewhere_max", [](const FactoredLayer& l) { return l.check.elsewhere.largest; }},
+    {"elsewhere_share",
+     [](const FactoredLayer& l) {
+       return l.check.measured.count > 0 ? double(l.check.elsewhere.count) / double(l.check.measured.count)
+                                         : 0;
+     }},
+    {"rounding_bound_max", [](const FactoredLayer& l) { return l.check.largest_bound; }},
+    {"largest_share_of_bound", [](const FactoredLayer& l) { return l.check.largest_share_of_bound; }},
+    {"values_beyond_bound", [](const FactoredLayer& l) { return double(l.check.beyond_bound); }},
+};
+
+constexpr Column<SettingResult> kCostColumns[] = {
+    {"mean_update_rate", [](const SettingResult& r) { return r.mean_update_rate; }},
+    {"renders", [](const SettingResult& r) { return double(r.renders); }},
+    {"polygons", [](const SettingResult& r) { return double(r.polygons); }},
+    {"pixels", [](const SettingResult& r) { return double(r.pixels); }},
+    {"chunks", [](const SettingResult& r) { return double(r.chunks); }},
+    {"modelled_ms", [](const SettingResult& r) { return r.modelled_ms; }},
+    {"wall_plan_ms", [](const SettingResult& r) { return r.plan.mean; }},
+    {"wall_render_ms", [](const SettingResult& r) { return r.render.mean; }},
+    {"wall_composite_ms", [](const SettingResult& r) { return r.composite.mean; }},
+    {"wall_frame_ms", [](const SettingResult& r) { return r.frame_ms(); }},
+};
+
+template <typename Row, std::size_t N>
+std::string csv_header(const char* first, const Column<Row> (&columns)[N]) {
+  std::string line = first;
+  for (const Column<Row>& column : columns) line += std::string(",") + column.name;
+  return line + "\n";
+}
+
+template <typename Row, std::size_t N>
+std::string csv_line(std::string name, const Row& row, const Column<Row> (&columns)[N]) {
+  for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) name.insert(at, "\"");
+  std::string line = "\"" + name + "\"";
+  for (const Column<Row>& column : columns) line += "," + exact(column.value(row));
+  return line + "\n";
+}
+
+template <typename Row, std::size_t N>
+Json json_row(const char* key, const std::string& name, const Row& row, const Column<Row> (&columns)[N]) {
+  Json json = {{key, name}};
+  for (const Column<Row>& column : columns) {
+    const double value = column.value(row);
+    json[column.name] = std::isfinite(value) ? Json(value) : Json(nullptr);
+  }
+  return json;
+}
+
+FactoredLayer whole_frame(const FactoringReport& report) {
+  FactoredLayer frame{"frame", 0, static_cast<int>(report.result.sampled.size()), report.result.frame};
+  for (const FactoredLayer& layer : report.result.layers) frame.shade_layers += layer.shade_layers;
+  return frame;
+}
+
+std::vector<FactoredLayer> layers_and_frame(const FactoringReport& report) {
+  std::vector<FactoredLayer> rows = report.result.layers;
+  rows.push_back(whole_frame(report));
+  return rows;
+}
+
+// --- Tables
+
+std::string percent(double share, int digits) { return fixed(100 * share, digits); }
+
+std::string rms_and_max(const ErrorSum& sum) {
+  return percent(sum.rms(), 4) + " / " + percent(sum.largest, 2);
+}
+
+Table prediction_table(const FactoringReport& report) {
+  Table table{{"factored alone", "shades", "by formula", "predicted", "measured", "unexplained", "elsewhere",
+               "bound", "of it %", "beyond"},
+              {},
+              1};
+  for (const FactoredLayer& layer : layers_and_frame(report)) {
+    const PredictionCheck& c = layer.check;
+    table.rows.push_back({layer.name, std::to_string(layer.shade_layers), rms_and_max(c.by_formula),
+                          rms_and_max(c.predicted), rms_and_max(c.measured), rms_and_max(c.unexplained),
+                          rms_and_max(c.elsewhere), percent(c.largest_bound, 2),
+                          percent(c.largest_share_of_bound, 1), std::to_string(c.beyond_bound)});
+  }
+  return table;
+}
+
+Table loss_table(const FactoringReport& report) {
+  Table table{{"picture", "RMS", "max", "PSNR dB", "SSIM", "FLIP", "pixels changed %"}, {}, 1};
+  for (const PictureLoss& loss : report.result.losses) {
+    const DiffSummary s = summarize(loss.frames);
+    table.rows.push_back({name(loss.picture), fixed(rms_code_values(s.mean), 3),
+                          std::to_string(s.worst.max_difference), fixed(s.mean.psnr_db, 2),
+                          fixed(s.mean.ssim, 5), fixed(s.mean.flip, 5), percent(s.mean.changed_pixels, 2)});
+  }
+  return table;
+}
+
+Table cost_table(const FactoringReport& report) {
+  Table table{{"sequence", "rate %", "renders", "polygons", "pixels", "chunks", "plan ms", "render ms",
+               "composite ms", "modelled ms"},
+              {},
+              1};
+  const auto row = [&](const char* name, const SettingResult& r) {
+    table.rows.push_back({name, percent(r.mean_update_rate, 1), std::to_string(r.renders),
+                          std::to_string(r.polygons), std::to_string(r.pixels), std::to_string(r.chunks),
+                          fixed(r.plan.mean, 2), fixed(r.render.mean, 1), fixed(r.composite.mean, 2),
+                          fixed(r.modelled_ms, 2)});
+  };
+  row("factored", report.result.factored);
+  row("unfactored", report.result.unfactored);
+  return table;
+}
+
+/// "factored: 61.2 % of the unfactored polygons, …".
+std::string savings(const FactoringReport& report) {
+  const SettingResult &a = report.result.factored, &b = report.result.unfactored;
+  const auto share = [](double part, double whole) { return whole > 0 ? percent(part / whole, 1) : "-"; };
+  return "factored, % of unfactored: polygons " + share(double(a.polygons), double(b.polygons)) +
+         ", pixels " + share(double(a.pixels), double(b.pixels)) + ", chunks " +
+         share(double(a.chunks), double(b.chunks)) + ", modelled " + share(a.modelled_ms, b.modelled_ms) +
+         ", measured " + share(a.frame_ms(), b.frame_ms()) + "\n";
+}
+
+}  // namespace
+
+double rms_code_values(const Quality& quality) { return 255 * std::pow(10, -quality.psnr_db / 20); }
+
+std::string pictures_csv(const FactoringReport& report) {
+  std::string csv = csv_header("picture", kLossColumns);
+  for (const PictureLoss& loss : report.result.losses)
+    csv += csv_line(name(loss.picture), loss, kLossColumns);
+  return csv;
+}
+
+std::string layers_csv(const FactoringReport& report) {
+  std::string csv = csv_header("layer", kLayerColumns);
+  for (const FactoredLayer& layer : layers_and_frame(report))
+    csv += csv_line(layer.name, layer, kLayerColumns);
+  return csv;
+}
+
+std::string costs_csv(const FactoringReport& report) {
+  return csv_header("sequence", kCostColumns) + csv_line("factored", report.result.factored, kCostColumns) +
+         csv_line("unfactored", report.result.unfactored, kCostColumns);
+}
+
+std::string json_of(const FactoringReport& report) {
+  Json layers = Json::array(), pictures = Json::array();
+  for (const FactoredLayer& layer : report.result.layers)
+    layers.push_back(json_row("layer", layer.name, layer, kLayerColumns));
+  for (const PictureLoss& loss : report.result.losses)
+    pictures.push_back(json_row("picture", name(loss.picture), loss, kLossColumns));
+  const Json json = {
+      {"schema", "talisman.factoring/1"},
+      {"sequence", report.sequence},
+      {"policy", report.policy},
+      {"warp", report.warp},
+      {"display_px", {report.display_px.x, report.display_px.y}},
+      {"first_frame", report.frames.first},
+      {"last_frame", report.frames.last},
+      {"quality_every", report.frames.every},
+      {"frames_compared", report.result.sampled},
+      {"error_unit", "linear light, 1: white"},
+      {"layers", layers},
+      {"frame", json_row("layer", "frame", whole_frame(report), kLayerColumns)},
+      {"pictures", pictures},
+      {"unfactored_blends_as_materials_say", report.result.blends_over_time},
+      {"costs", Json::array({json_row("sequence", "factored", report.result.factored, kCostColumns),
+                             json_row("sequence", "unfactored", report.result.unfactored, kCostColumns)})},
+      {"pictured_frame", report.result.worst.frame}};
+  return json.dump(1) + "\n";
+}
+
+void write_report(const FactoringReport& report, const std::string& dir) {
+  write_factoring_pictures(report, dir);
+  write_text_atomically(dir + "/factoring.csv", pictures_csv(report));
+  write_text_atomically(dir + "/factoring-layers.csv", layers_csv(report));
+  write_text_atomically(dir + "/factoring-costs.csv", costs_csv(report));
+  write_text_atomically(dir + "/factoring.json", json_of(report));
+}
+
+void print_report(const FactoringReport& report, std::ostream& out) {
+  out << report.sequence << ": frames " << report.frames.first << "-" << report.frames.last << " planned, "
+      << report.result.sampled.size() << " of them drawn and compared (one in " << report.frames.every
+      << "), " << report.display_px.x << "x" << report.display_px.y << " px, policy " << report.policy
+      << ", warp " << report.warp
+      << "\n\nover alone: error of the frame, RMS / largest, % of white in linear light; predicted: by the "
+         "formula and what it does not know;"
+         "\nunexplained: measured - predicted; elsewhere: measured where nothing is predicted; bound: of "
+         "rounding (8-bit sprites, 16-bit compositor);"
+         "\nof it: the largest share of its own bound that an unexplained error reaches; beyond: how many "
+         "are "
+         "larger\n"
+      << plain_text(prediction_table(report))
+      << "\nwhat is lost, against the unfactored truth: code values of the sRGB frame; each + adds to the "
+         "line "
+         "above\n"
+      << plain_text(loss_table(report));
+  if (report.result.blends_over_time)
+    out << "textures are blended over time, which the unfactored sequence cannot: its truth has the blends "
+           "of the materials\n";
+  out << "\nwhat factoring saves: the sequence under its own policy; ms per frame, mean, measured on this "
+         "machine\n"
+      << plain_text(cost_table(report)) << savings(report);
+}
+
+}  // namespace talisman::sequences

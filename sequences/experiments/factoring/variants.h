@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Sequences that differ only in how their shading is factored, and how they are drawn so that nothing else
+/// differs: what the factoring experiment compares.
+
+#include "sequences/experiments/without_effect.h"
+
+namespace talisman::sequences {
+
+/// Does some layer have a shade layer?
+bool is_factored(const Sequence& sequence);
+
+/// The same with every term in the sprite of its surface. Multipliers of textures over time are lost: the
+/// renderer knows only Material::texture_blend.
+Variant unfactored(const Variant& variant);
+
+/// Does the compositor blend the textures of some layer otherwise than its material says, at some time?
+bool blends_over_time(const Sequence& sequence);
+
+enum class ShadeResolution { Full, Own };
+
+/// Every layer in every frame with its texels on the pixels of the display: all sprites at the display's
+/// resolution, without motion blur, not rotated, not compressed; and `over` alone. Shade layers are like
+/// their base in all of this, or as coarse as the sequence asks for.
+Variant texel_on_pixel(const Variant& variant, ShadeResolution shades);
+
+/// As the sequence places its sprites, every layer in every frame.
+Variant without_reuse(const Variant& variant);
+
+}  // namespace talisman::sequences

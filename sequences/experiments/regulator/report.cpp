@@ -1,0 +1,289 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/experiments/regulator/report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "layers/check.h"
+#include "sequences/files/image_io.h"
+#include "sequences/pictures/page.h"
+#include "sequences/experiments/regulator/plots.h"
+
+namespace talisman::sequences {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text(const char* pattern, double value) {
+  if (!std::isfinite(value)) return "";
+  char buffer[64];
+  std::snprintf(buffer, sizeof buffer, pattern, value);
+  return buffer;
+}
+
+std::string exact(double value) { return text("%.9g", value); }
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// A measured quantity of a setting, named once for CSV and JSON.
+struct Column {
+  const char* name;
+  double (*value)(const SettingResult&);
+};
+
+constexpr Column kColumns[] = {
+    {"mean_update_rate", [](const SettingResult& r) { return r.mean_update_rate; }},
+    {"weighted_update_rate", [](const SettingResult& r) { return r.weighted_update_rate; }},
+    {"renders", [](const SettingResult& r) { return double(r.renders); }},
+    {"polygons", [](const SettingResult& r) { return double(r.polygons); }},
+    {"pixels", [](const SettingResult& r) { return double(r.pixels); }},
+    {"chunks", [](const SettingResult& r) { return double(r.chunks); }},
+    {"modelled_ms", [](const SettingResult& r) { return r.modelled_ms; }},
+    {"mean_geometric_px", [](const SettingResult& r) { return r.mean_geometric_px; }},
+    {"max_geometric_px", [](const SettingResult& r) { return r.max_geometric_px; }},
+    {"psnr_db", [](const SettingResult& r) { return r.quality.psnr_db; }},
+    {"ssim", [](const SettingResult& r) { return r.quality.ssim; }},
+    {"flip", [](const SettingResult& r) { return r.quality.flip; }},
+    {"popping_rms", [](const SettingResult& r) { return r.popping.rms; }},
+    {"popping_p95", [](const SettingResult& r) { return r.popping.p95; }},
+    {"popping_elsewhere_rms", [](const SettingResult& r) { return r.popping.elsewhere_rms; }},
+    {"popping_share", [](const SettingResult& r) { return r.popping.stepping_share; }},
+    {"wall_plan_mean_ms", [](const SettingResult& r) { return r.plan.mean; }},
+    {"wall_plan_median_ms", [](const SettingResult& r) { return r.plan.median; }},
+    {"wall_render_mean_ms", [](const SettingResult& r) { return r.render.mean; }},
+    {"wall_render_median_ms", [](const SettingResult& r) { return r.render.median; }},
+    {"wall_composite_mean_ms", [](const SettingResult& r) { return r.composite.mean; }},
+    {"wall_composite_median_ms", [](const SettingResult& r) { return r.composite.median; }},
+    {"wall_frame_mean_ms", [](const SettingResult& r) { return r.frame_ms(); }},
+};
+
+Json settings_json(const RegulatorReport& report) {
+  Json all = Json::array();
+  for (const SettingResult& result : report.settings) {
+    Json json = {{"policy", result.setting.series},
+                 {"knob", result.setting.unit.empty() ? Json(nullptr) : Json(result.setting.value)},
+                 {"knob_unit", result.setting.unit}};
+    for (const Column& column : kColumns) json[column.name] = number(column.value(result));
+    all.push_back(json);
+  }
+  return all;
+}
+
+Json lookahead_json(const LookaheadCurve& curve) {
+  Json points = Json::array();
+  for (const LookaheadPoint& p : curve.points)
+    points.push_back({{"prediction", p.prediction},
+                      {"lookahead_frames", p.frames},
+                      {"renders", p.renders},
+                      {"mean_update_rate", p.mean_update_rate},
+                      {"max_geometric_px", p.max_geometric_px},
+                      {"wall_plan_us_per_layer_and_frame", p.plan_us}});
+  return {{"geometric_px", curve.geometric_px},
+          {"display_px", {curve.display_px.x, curve.display_px.y}},
+          {"threshold_renders", curve.threshold_renders},
+          {"oracle_renders", curve.oracle_renders},
+          {"points", points}};
+}
+
+Json rank_json(const RankCorrelation& rank) {
+  return {{"spearman_rho", rank.defined ? Json(rank.rho) : Json(nullptr)}, {"n", rank.n}};
+}
+
+Json calibration_json(const RegulatorReport& report) {
+  Json all = Json::array();
+  for (const CalibrationSummary& c : report.calibration) {
+    Json bins = Json::array();
+    for (const CalibrationBin& bin : c.bins)
+      bins.push_back({{"center", bin.center},
+                      {"samples", bin.samples},
+                      {"median_error", bin.median_error},
+                      {"lower_quartile_error", bin.lower_error},
+                      {"upper_quartile_error", bin.upper_error},
+                      {"median_psnr_db", number(bin.psnr_db())},
+                      {"median_apparent_shift_px", bin.median_shift_px}});
+    all.push_back({{"fiducial", c.fiducial->name},
+                   {"unit", c.fiducial->unit},
+                   {"error", rank_json(c.error)},
+                   {"apparent_shift", rank_json(c.shift)},
+                   {"median_rho_of_layers", c.layers > 0 ? Json(c.median_rho_of_layers) : Json(nullptr)},
+                   {"layers", c.layers},
+                   {"bins", bins}});
+  }
+  return all;
+}
+
+// --- Tables
+
+std::string percent(double part, double whole) { return whole > 0 ? fixed(100 * part / whole, 1) : "-"; }
+
+Table cost_table(const RegulatorReport& report) {
+  Table table{{"policy", "knob", "rate %", "weighted %", "polygons %", "pixels %", "chunks %", "plan ms",
+               "render ms", "composite ms", "median ms", "modelled ms"},
+              {},
+              2};
+  const SettingResult& reference = report.settings.front();
+  for (const SettingResult& r : report.settings)
+    table.rows.push_back(
+        {r.setting.series, r.setting.knob(), fixed(100 * r.mean_update_rate, 1),
+         fixed(100 * r.weighted_update_rate, 1), percent(double(r.polygons), double(reference.polygons)),
+         percent(double(r.pixels), double(reference.pixels)),
+         percent(double(r.chunks), double(reference.chunks)), fixed(r.plan.mean, 2), fixed(r.render.mean, 1),
+         fixed(r.composite.mean, 1), fixed(r.plan.median + r.render.median + r.composite.median, 1),
+         fixed(r.modelled_ms, 2)});
+  return table;
+}
+
+Table error_table(const RegulatorReport& report) {
+  Table table{{"policy", "knob", "mean px", "max px", "PSNR dB", "SSIM", "FLIP", "popping", "p95",
+               "elsewhere", "steps %", "front"},
+              {},
+              2};
+  const std::vector<bool> front = polygon_front(report);
+  for (std::size_t k = 0; k < report.settings.size(); ++k) {
+    const SettingResult& r = report.settings[k];
+    table.rows.push_back({r.setting.series, r.setting.knob(), fixed(r.mean_geometric_px, 3),
+                          fixed(r.max_geometric_px, 2), fixed(r.quality.psnr_db, 2), fixed(r.quality.ssim, 4),
+                          fixed(r.quality.flip, 4), fixed(r.popping.rms, 2), fixed(r.popping.p95, 0),
+                          fixed(r.popping.elsewhere_rms, 2), fixed(100 * r.popping.stepping_share, 1),
+                          front[k] ? "*" : ""});
+  }
+  return table;
+}
+
+Table lookahead_table(const LookaheadCurve& curve) {
+  Table table{
+      {"motion", "N", "renders", "of threshold %", "over oracle %", "rate %", "max px", "plan us"}, {}, 1};
+  const auto row = [&](const std::string& name, const std::string& n, std::int64_t renders, double rate,
+                       const std::string& max_px, const std::string& plan_us) {
+    table.rows.push_back({name, n, std::to_string(renders),
+                          percent(double(renders), double(curve.threshold_renders)),
+                          percent(double(renders - curve.oracle_renders), double(curve.oracle_renders)),
+                          fixed(100 * rate, 1), max_px, plan_us});
+  };
+  row("threshold", "-", curve.threshold_renders, curve.threshold_rate, "-", "-");
+  for (const LookaheadPoint& p : curve.points)
+    row(p.prediction, std::to_string(p.frames), p.renders, p.mean_update_rate, fixed(p.max_geometric_px, 2),
+        fixed(p.plan_us, 1));
+  row("oracle", "-", curve.oracle_renders, curve.oracle_rate, "-", "-");
+  return table;
+}
+
+std::string rho_text(const RankCorrelation& rank) { return rank.defined ? fixed(rank.rho, 3) : "-"; }
+
+Table calibration_table(const std::vector<CalibrationSummary>& calibration) {
+  Table table{{"fiducial", "n", "rho", "rho in a layer", "layers", "rho of shift"}, {}, 1};
+  for (const CalibrationSummary& c : calibration)
+    table.rows.push_back({c.fiducial->name, std::to_string(c.computed), rho_text(c.error),
+                          c.layers > 0 ? fixed(c.median_rho_of_layers, 3) : "-", std::to_string(c.layers),
+                          rho_text(c.shift)});
+  return table;
+}
+
+/// "1 px of the geometric fiducial: median error …" for each fiducial that has samples around 1.
+std::string in_words(const std::vector<CalibrationSummary>& calibration) {
+  std::string words;
+  for (const CalibrationSummary& c : calibration)
+    for (const CalibrationBin& bin : c.bins)
+      if (bin.center == 1)
+        words += "1 " + std::string(c.fiducial->unit) + " of " + c.fiducial->name +
+                 " buys a median error of " + fixed(bin.median_error, 2) + " code values (" +
+                 fixed(bin.psnr_db(), 1) + " dB), quartiles " + fixed(bin.lower_error, 2) + " and " +
+                 fixed(bin.upper_error, 2) + ", n = " + std::to_string(bin.samples) + "\n";
+  return words;
+}
+
+std::string size_text(layers::ivec2 px) { return std::to_string(px.x) + "x" + std::to_string(px.y); }
+
+}  // namespace
+
+std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error) {
+  TALISMAN_CHECK_EQ(cost.size(), error.size());
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < cost.size(); ++k)
+    if (!std::isnan(cost[k]) && !std::isnan(error[k])) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return cost[a] != cost[b] ? cost[a] < cost[b] : error[a] < error[b];
+  });
+  std::vector<bool> front(cost.size(), false);
+  double best = HUGE_VAL;
+  for (const std::size_t k : order)
+    if (error[k] < best) front[k] = true, best = error[k];
+  return front;
+}
+
+std::string settings_csv(const RegulatorReport& report) {
+  std::string csv = "policy,knob,knob_unit,pareto_polygons";
+  for (const Column& column : kColumns) csv += std::string(",") + column.name;
+  csv += "\n";
+  const std::vector<bool> front = polygon_front(report);
+  for (std::size_t k = 0; k < report.settings.size(); ++k) {
+    const RegulatorSetting& setting = report.settings[k].setting;
+    csv += setting.series + "," + (setting.unit.empty() ? "" : exact(setting.value)) + "," + setting.unit +
+           (front[k] ? ",1" : ",0");
+    for (const Column& column : kColumns) csv += "," + exact(column.value(report.settings[k]));
+    csv += "\n";
+  }
+  return csv;
+}
+
+std::string samples_csv(const RegulatorReport& report) {
+  std::string csv = "frame,layer,age_frames";
+  for (const CalibratedFiducial& fiducial : calibrated_fiducials())
+    csv += std::string(",") + fiducial.name + (std::string(fiducial.unit) == "%" ? "_percent" : "_px");
+  csv += ",error,psnr_db,apparent_shift_px,pixels\n";
+  for (const CalibrationSample& s : report.samples) {
+    std::string layer = report.layers[s.layer];
+    for (std::size_t at = 0; (at = layer.find('"', at)) != std::string::npos; at += 2) layer.insert(at, "\"");
+    csv += std::to_string(s.frame) + ",\"" + layer + "\"," + std::to_string(s.age_frames);
+    for (const double value : s.fiducials) csv += "," + exact(value);
+    csv += "," + exact(s.error) + "," + exact(s.error > 0 ? 20 * std::log10(255 / s.error) : HUGE_VAL) + "," +
+           exact(s.apparent_shift_px) + "," + std::to_string(s.pixels) + "\n";
+  }
+  return csv;
+}
+
+std::string json_of(const RegulatorReport& report) {
+  const Json json = {{"schema", "talisman.regulator/1"},
+                     {"sequence", report.sequence},
+                     {"warp", report.warp},
+                     {"display_px", {report.display_px.x, report.display_px.y}},
+                     {"first_frame", report.frames.first},
+                     {"last_frame", report.frames.last},
+                     {"quality_every", report.frames.every},
+                     {"frames_compared", sampled_frames(report.frames).size()},
+                     {"settings", settings_json(report)},
+                     {"lookahead", lookahead_json(report.lookahead)},
+                     {"calibration", calibration_json(report)}};
+  return json.dump(1) + "\n";
+}
+
+void write_report(const RegulatorReport& report, const std::string& dir) {
+  write_regulator_plots(report, dir);
+  write_text_atomically(dir + "/regulator.csv", settings_csv(report));  // all numbers of the plots, and more
+  write_text_atomically(dir + "/calibration.csv", samples_csv(report));
+  write_text_atomically(dir + "/regulator.json", json_of(report));
+}
+
+void print_report(const RegulatorReport& report, std::ostream& out) {
+  out << report.sequence << ": frames " << report.frames.first << "-" << report.frames.last << " planned, "
+      << sampled_frames(report.frames).size() << " of them drawn and compared (one in " << report.frames.every
+      << "), " << size_text(report.display_px) << " px, warp " << report.warp
+      << "\n\nwhat it costs: % of reference; ms per frame, mean, measured on this machine; median of the "
+         "sum\n"
+      << plain_text(cost_table(report))
+      << "\nhow far from the truth: geometric error displayed; picture against reference; popping: step of "
+         "the"
+         "\nerror, code values, where sprites are drawn again (RMS, 95th percentile), and elsewhere; "
+         "* least FLIP for its polygons\n"
+      << plain_text(error_table(report)) << "\nlookahead at " << fixed(report.lookahead.geometric_px, 2)
+      << " px, " << size_text(report.lookahead.display_px) << " px display, plan only\n"
+      << plain_text(lookahead_table(report.lookahead))
+      << "\nfiducials against image error of each layer alone, Spearman's rho (1: rise together)\n"
+      << plain_text(calibration_table(report.calibration)) << in_words(report.calibration);
+}
+
+}  // namespace talisman::sequences

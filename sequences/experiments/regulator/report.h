@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The results of `talisman accuracy --regulator`, as tables, CSV, JSON and pictures.
+///
+/// - regulator.csv: one line per setting, what was drawn, what it cost, how far it is from the truth
+/// - regulator.svg: FLIP against measured time per frame; the Pareto front is marked
+/// - regulator-polygons.svg: FLIP against polygons drawn, the same without the noise of a clock
+/// - regulator-bound.svg: largest geometric error displayed against renders; the oracle is the floor
+/// - regulator-popping.svg: step of the error at a re-render against polygons drawn (popping.h)
+/// - lookahead.csv, lookahead.svg: renders against N of lookahead, between threshold and oracle
+/// - calibration.csv: one line per sample, fiducials and image error (calibration.h)
+/// - calibration-NAME.svg: image error against one fiducial, with the medians of its octaves
+/// - regulator.json: talisman.regulator/1, all of it but the samples
+///
+/// Beside each SVG lies a CSV with the points that it shows. Columns named `wall_…` are measured times; all
+/// else is the same in every run.
+
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "sequences/experiments/regulator/calibration.h"
+#include "sequences/experiments/regulator/lookahead_curve.h"
+#include "sequences/experiments/regulator/experiment.h"
+
+namespace talisman::sequences {
+
+struct RegulatorReport {
+  std::string sequence, warp;
+  layers::ivec2 display_px{0, 0};
+  ExperimentFrames frames;
+  std::vector<SettingResult> settings;  ///< `reference` first
+  LookaheadCurve lookahead;
+  std::vector<std::string> layers;  ///< names, by id
+  std::vector<CalibrationSample> samples;
+  std::vector<CalibrationSummary> calibration;
+};
+
+/// Which of the points are not beaten by another one that is as good in both and better in one; small is
+/// good. Of equal points the first counts; not-a-number is on no front.
+std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);
+
+std::string settings_csv(const RegulatorReport& report);
+std::string samples_csv(const RegulatorReport& report);
+std::string json_of(const RegulatorReport& report);
+
+/// Writes all files into the folder, which is there. Throws OutputError.
+void write_report(const RegulatorReport& report, const std::string& dir);
+
+void print_report(const RegulatorReport& report, std::ostream& out);
+
+}  // namespace talisman::sequences

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/experiments/regulator/setting_run.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "sequences/experiments/statistics.h"
+
+namespace talisman::sequences {
+namespace {
+
+Settings with(Settings settings, const RegulatorSetting& setting) {
+  settings.regulator = setting.options;
+  return settings;
+}
+
+Timing timing_of(const std::vector<FrameLine>& lines, double FrameLine::*field) {
+  std::vector<double> ms;
+  for (const FrameLine& line : lines) ms.push_back(line.*field);
+  if (ms.empty()) return {};
+  return {std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size()), quantile(ms, 0.5)};
+}
+
+}  // namespace
+
+SettingRun::SettingRun(const Sequence& sequence, Settings settings, const RegulatorSetting& setting)
+    : setting_(setting),
+      pipeline_(*sequence.scene, sequence.layers, with(std::move(settings), setting)),
+      state_(pipeline_),
+      summary_(start_summary(pipeline_, sequence.name)) {}
+
+void SettingRun::advance(int frame, const chunker::PreparedScene* prepared) {
+  layers_before_.clear();
+  for (const ShownSprite& sprite : report_.shown) layers_before_.push_back(sprite.layer);
+  report_ = step(pipeline_, state_, frame, prepared);
+  before_ = std::move(now_);
+  now_ = prepared ? to_image8(report_.picture) : Image8{};
+}
+
+void SettingRun::count() {
+  const Pipeline& pipeline = with_aggregates(pipeline_, state_);
+  add_decisions(summary_, pipeline, report_, state_);
+  summary_.frames.push_back(line_of(pipeline, report_));
+  for (const regulator::LayerDecision& decision : report_.plan.decisions) chunks_ += decision.cost.chunks;
+}
+
+void SettingRun::judge(const ConsecutiveFrames& truth) {
+  drawn_.push_back(summary_.frames.back());
+  qualities_.push_back({std::to_string(report_.frame), compare(now_, truth.now)});
+  if (before_.rgb.empty() || truth.before.rgb.empty()) return;
+  popping_.add({before_, now_}, truth,
+               stepping_pixels(layers_before_, report_, state_.sprites, pipeline_.settings.view.display_px));
+}
+
+SettingResult SettingRun::result() const {
+  SettingResult result;
+  result.setting = setting_;
+  result.mean_update_rate = summary_.mean_update_rate();
+  result.weighted_update_rate = summary_.cost_weighted_update_rate();
+  result.polygons = summary_.total(&FrameLine::polygons_rendered);
+  result.pixels = summary_.total(&FrameLine::pixels_rendered);
+  result.chunks = chunks_;
+  double error_px = 0;
+  int shown = 0;
+  for (const LayerSummary& layer : summary_.layers) {
+    result.renders += layer.renders;
+    error_px += layer.sum_geometric_px;
+    shown += layer.frames_shown;
+    result.max_geometric_px = std::max(result.max_geometric_px, layer.max_geometric_px);
+  }
+  result.mean_geometric_px = shown > 0 ? error_px / shown : 0;
+  result.plan = timing_of(summary_.frames, &FrameLine::plan_ms);
+  result.render = timing_of(drawn_, &FrameLine::render_ms);
+  result.composite = timing_of(drawn_, &FrameLine::composite_ms);
+  result.modelled_ms = timing_of(drawn_, &FrameLine::modelled_ms).mean;
+  result.quality = summarize(qualities_).mean;
+  result.popping = popping_.result();
+  return result;
+}
+
+}  // namespace talisman::sequences

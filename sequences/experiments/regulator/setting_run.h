@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// One setting of a sequence on its way through the frames: what the experiments measure of it.
+///
+/// All frames are planned; those that are compared with a truth are drawn, and their predecessors, so that
+/// what a frame draws is what was due in it.
+
+#include <vector>
+
+#include "sequences/pictures/diff.h"
+#include "sequences/experiments/regulator/popping.h"
+#include "sequences/pictures/quality.h"
+#include "sequences/experiments/regulator/settings.h"
+#include "sequences/results/frame_lines.h"
+#include "sequences/content/sequence.h"
+#include "sequences/pipeline/step.h"
+
+namespace talisman::sequences {
+
+/// Milliseconds per frame.
+struct Timing {
+  double mean = 0;    ///< what a frame costs over a run
+  double median = 0;  ///< what most frames cost; 0 ms of rendering where most frames render nothing
+};
+
+struct SettingResult {
+  RegulatorSetting setting;
+  // From the plan of all frames.
+  double mean_update_rate = 0, weighted_update_rate = 0;  ///< 0 … 1; weighted by polygons
+  std::int64_t renders = 0, polygons = 0, pixels = 0, chunks = 0;
+  double mean_geometric_px = 0, max_geometric_px = 0;  ///< of what is displayed
+  Timing plan;
+  // From the frames that are drawn.
+  Timing render, composite;
+  double modelled_ms = 0;  ///< mean, by the profile talisman-1996
+  Quality quality;         ///< mean against `reference`; PSNR of the mean squared error
+  Popping popping;
+  double frame_ms() const { return plan.mean + render.mean + composite.mean; }
+};
+
+/// Keeps references to the sequence.
+class SettingRun {
+ public:
+  /// `settings` holds all that `setting` does not say.
+  SettingRun(const Sequence& sequence, Settings settings, const RegulatorSetting& setting);
+  SettingRun(const SettingRun&) = delete;
+  SettingRun& operator=(const SettingRun&) = delete;
+
+  /// Plans frame `frame`, and draws it where `prepared` is given.
+  void advance(int frame, const chunker::PreparedScene* prepared);
+
+  /// The frame of the last advance belongs to what is measured.
+  void count();
+
+  /// The frame of the last advance was drawn: how far it is from `truth`, and (where the truth of the frame
+  /// before is given, too, and that was drawn) how hard it pops.
+  void judge(const ConsecutiveFrames& truth);
+
+  /// Empty where not drawn.
+  ConsecutiveFrames pictures() const { return {before_, now_}; }
+  /// Of the last judge.
+  const Quality& quality() const { return qualities_.back().quality; }
+  SettingResult result() const;
+
+ private:
+  RegulatorSetting setting_;
+  Pipeline pipeline_;
+  PipelineState state_;
+  Summary summary_;
+  FrameReport report_;
+  Image8 before_, now_;
+  std::vector<int> layers_before_;
+  std::int64_t chunks_ = 0;
+  std::vector<FrameLine> drawn_;
+  std::vector<FrameDiff> qualities_;
+  PoppingMeter popping_;
+};
+
+}  // namespace talisman::sequences

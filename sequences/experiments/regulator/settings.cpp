@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/experiments/regulator/settings.h"
+
+#include <cmath>
+#include <cstdio>
+
+namespace talisman::sequences {
+namespace {
+
+using regulator::Policy;
+using regulator::RegulatorOptions;
+
+/// `base` under another policy, with nothing left of the limits that its author may have set for his own.
+RegulatorOptions under(const RegulatorOptions& base, Policy policy) {
+  RegulatorOptions options = base;
+  options.policy = policy;
+  options.budget_polygons = options.budget_pixels = regulator::kNoLimit;
+  return options;
+}
+
+void add_periods(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base, Policy policy) {
+  for (const int n : compared_holds()) {
+    RegulatorOptions options = under(base, policy);
+    options.hold_frames = n;
+    settings.push_back({std::string(regulator::name(policy)), "frames", double(n), options});
+  }
+}
+
+void add_thresholds(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base, Policy policy,
+                    const std::string& series) {
+  for (const double px : compared_thresholds()) {
+    RegulatorOptions options = under(base, policy);
+    options.geometric_px = px;
+    options.lookahead_frames = kComparedLookahead;
+    settings.push_back({series, "px", px, options});
+  }
+}
+
+void add_budgets(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base,
+                 double polygons_per_frame) {
+  for (const double percent : compared_budgets()) {
+    RegulatorOptions options = under(base, Policy::Budget);
+    options.budget_polygons = std::llround(polygons_per_frame * percent / 100);
+    settings.push_back({"budget", "%", percent, options});
+  }
+}
+
+}  // namespace
+
+std::string RegulatorSetting::knob() const {
+  char text[64] = "";
+  if (unit == "frames")
+    std::snprintf(text, sizeof text, "N %g", value);
+  else if (!unit.empty())
+    std::snprintf(text, sizeof text, "%g %s", value, unit.c_str());
+  return text;
+}
+
+std::vector<int> compared_holds() { return {2, 3, 5, 8}; }
+std::vector<double> compared_thresholds() { return {0.25, 0.5, 1, 2, 4, 8}; }
+std::vector<double> compared_budgets() { return {5, 10, 20, 40, 80}; }
+
+std::vector<RegulatorSetting> regulator_settings(const RegulatorOptions& base, double polygons_per_frame) {
+  std::vector<RegulatorSetting> settings{{"reference", "", 0, under(base, Policy::Reference)}};
+  add_periods(settings, base, Policy::Hold);
+  add_periods(settings, base, Policy::Interpolate);
+  add_thresholds(settings, base, Policy::Threshold, "threshold");
+  add_thresholds(settings, base, Policy::Lookahead, "lookahead " + std::to_string(kComparedLookahead));
+  add_thresholds(settings, base, Policy::Oracle, "oracle");
+  add_budgets(settings, base, polygons_per_frame);
+  return settings;
+}
+
+}  // namespace talisman::sequences

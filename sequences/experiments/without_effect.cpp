@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/experiments/without_effect.h"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
+
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+
+#include "chunker/texture.h"
+#include "layers/check.h"
+#include "layers/shading.h"
+#include "sequences/results/frame_lines.h"
+
+namespace talisman::sequences {
+namespace {
+
+using layers::dmat3;
+using layers::dmat4;
+using layers::dvec3;
+using layers::dvec4;
+using layers::Effect;
+using layers::Layer;
+using layers::LayerKind;
+using layers::LayerPreferences;
+using layers::LayerSpec;
+using layers::Material;
+using layers::Scene;
+using layers::vec3;
+using layers::vec4;
+
+// --- Scenes without an effect ---
+
+/// Premultiplied, linear; white where there is no texture.
+vec4 mean_of(const Scene& scene, int texture) {
+  if (texture < 0) return vec4(1);
+  const chunker::Pyramid pyramid = chunker::build_pyramid(scene.textures[texture]);
+  if (pyramid.empty()) return vec4(1);
+  const chunker::Float4 mean = pyramid.mean();
+  return {mean[0], mean[1], mean[2], mean[3]};
+}
+
+/// The surface that a texture looks like from far away: k₁ T₁ + k₂ α₁ T₂ at the means of both.
+void flatten_textures(const Scene& scene, Material& material) {
+  if (material.texture < 0 && material.texture2 < 0) return;
+  vec4 mean = mean_of(scene, material.texture);
+  const float alpha = mean.w;
+  if (material.texture2 >= 0)
+    mean = material.texture_blend.x * mean +
+           material.texture_blend.y * alpha * mean_of(scene, material.texture2);
+  if (alpha > 0) material.base_color *= vec3(mean) / alpha;
+  material.opacity *= alpha;
+  material.texture = material.texture2 = -1;
+}
+
+void remove_textures(Scene& scene) {
+  for (Material& material : scene.materials) flatten_textures(scene, material);
+  scene.textures.clear();
+}
+
+void remove_lighting(Scene& scene) {
+  for (Material& material : scene.materials) material.unlit = true;
+}
+
+void remove_highlights(Scene& scene) {
+  for (Material& material : scene.materials) material.specular = vec3(0);
+}
+
+void remove_translucency(Scene& scene) {
+  for (Material& material : scene.materials) material.opacity = 1;
+  for (layers::Texture& texture : scene.textures) {
+    if (!texture.has_alpha) continue;
+    for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i] = 255;
+    texture.has_alpha = false;
+  }
+}
+
+void remove_shadows(Scene& scene) {
+  for (layers::Light& light : scene.lights) light.casts_shadow = false;
+}
+
+void remove_mirrors(Scene& scene) {
+  for (Material& material : scene.materials) material.reflectivity = 0;
+}
+
+/// Deepest node at or above both; -1: none. A parent's index is below its children's.
+int common_ancestor(const Scene& scene, int a, int b) {
+  while (a != b) (a > b ? a : b) = scene.nodes[std::max(a, b)].parent;
+  return a;
+}
+
+/// What carries a skinned part as a whole: the deepest node above it and its joints, or above the joints
+/// alone.
+int carrier_of(const Scene& scene, const layers::Part& part) {
+  const std::vector<int>& joints = scene.skins[part.skin].joints;
+  int above_joints = joints.empty() ? part.node : joints.front();
+  for (const int joint : joints) above_joints = common_ancestor(scene, above_joints, joint);
+  const int above_all = above_joints < 0 ? -1 : common_ancestor(scene, above_joints, part.node);
+  return above_all >= 0 ? above_all : above_joints >= 0 ? above_joints : part.node;
+}
+
+/// Normals turn with the joint that weighs most: a pose is kept, not animated.
+dvec3 posed_normal(const layers::Mesh& mesh, std::size_t vertex, const std::vector<dmat3>& turned_by) {
+  const vec4& weights = mesh.weights[vertex];
+  int heaviest = 0;
+  for (int k = 1; k < 4; ++k)
+    if (weights[k] > weights[heaviest]) heaviest = k;
+  const dvec3 normal = turned_by[mesh.joints[vertex][heaviest]] * dvec3(mesh.normals[vertex]);
+  const double length = glm::length(normal);
+  return length > 0 ? normal / length : dvec3(mesh.normals[vertex]);
+}
+
+/// The mesh of a skinned part as it is at `frame`, in the space of `node`.
+layers::Mesh posed_mesh(const layers::SceneFrame& frame, const layers::Part& part, int node) {
+  layers::Mesh mesh = frame.scene->meshes[part.mesh];
+  const dmat4 node_from_world = glm::inverse(frame.world_from_node[node]);
+  const std::vector<dvec3> world = layers::world_positions(frame, part);
+  for (std::size_t i = 0; i < world.size(); ++i)
+    mesh.positions[i] = vec3(node_from_world * dvec4(world[i], 1));
+  std::vector<dmat3> turned_by;
+  for (const dmat4& joint : layers::joint_palette(frame, part))
+    turned_by.push_back(glm::transpose(glm::inverse(dmat3(node_from_world * joint))));
+  for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+    mesh.normals[i] = vec3(posed_normal(mesh, i, turned_by));
+  mesh.joints.clear();
+  mesh.weights.clear();
+  return mesh;
+}
+
+void remove_skins(Scene& scene) {
+  Scene posed = scene;
+  const layers::SceneFrame first = scene.at(0);
+  for (layers::Part& part : posed.parts) {
+    if (part.skin < 0) continue;
+    const int carrier = carrier_of(scene, part);
+    posed.meshes.push_back(posed_mesh(first, part, carrier));
+    part.mesh = static_cast<int>(posed.meshes.size()) - 1;
+    part.node = carrier;
+    part.skin = -1;
+  }
+  posed.skins.clear();
+  scene = std::move(posed);
+}
+
+// --- Layers ---
+
+/// Ids change where shade layers come or go; names do not.
+std::vector<layers::ExplicitPair> renamed(const std::vector<layers::ExplicitPair>& pairs,
+                                          const std::vector<Layer>& before, const std::vector<Layer>& after) {
+  std::map<std::string, int> id_of;
+  for (const Layer& layer : after) id_of[layer.name] = layer.id;
+  std::vector<layers::ExplicitPair> result;
+  for (const layers::ExplicitPair& pair : pairs) {
+    const auto behind = id_of.find(before[pair.behind].name), front = id_of.find(before[pair.front].name);
+    if (behind != id_of.end() && front != id_of.end()) result.push_back({behind->second, front->second});
+  }
+  return result;
+}
+
+/// The layers again, after scene or specs have changed.
+void factor_again(Variant& variant) {
+  Sequence& sequence = variant.sequence;
+  layers::LayerSet factored = layers::factor(*sequence.scene, sequence.layer_specs);
+  for (auto* pairs : {&sequence.explicit_order, &variant.settings.explicit_order})
+    *pairs = renamed(*pairs, sequence.layers.layers, factored.layers);
+  sequence.layers = std::move(factored);
+}
+
+void change_scene(Variant& variant, void (*change)(Scene&)) {
+  Scene scene = *variant.sequence.scene;
+  change(scene);
+  variant.sequence.scene = std::make_shared<const Scene>(std::move(scene));
+  factor_again(variant);
+}
+
+/// Layers none of whose parts casts a shadow must not begin to when they become opaque.
+void keep_casters(Variant& variant) {
+  const Sequence& sequence = variant.sequence;
+  std::size_t spec = 0;
+  for (const Layer& layer : sequence.layers.layers) {
+    if (layer.kind != LayerKind::Geometry) continue;
+    LayerSpec& asked = variant.sequence.layer_specs[spec++];
+    asked.casts_shadows =
+        asked.casts_shadows && layers::any_part(*sequence.scene, layer, layers::casts_shadow);
+  }
+}
+
+template <typename Change>
+void change_preferences(Variant& variant, Change change) {
+  for (LayerSpec& spec : variant.sequence.layer_specs) {
+    change(spec.preferences);
+    layers::ShadingSpec& shading = spec.shading;
+    for (auto* term : {&shading.shadows, &shading.specular, &shading.reflection, &shading.textures})
+      if (*term) change(**term);
+  }
+  factor_again(variant);
+}
+
+using Term = std::optional<LayerPreferences> layers::ShadingSpec::*;
+
+void remove_shade_layers(Variant& variant, LayerKind kind, Term term) {
+  std::vector<LayerSpec>& specs = variant.sequence.layer_specs;
+  for (LayerSpec& spec : specs) spec.shading.*term = std::nullopt;
+  factor_again(variant);
+  // What is still there was not asked for, but must leave a sprite together with highlights or textures.
+  std::size_t base = 0, geometry = 0;
+  for (const Layer& layer : variant.sequence.layers.layers) {
+    if (layer.kind == LayerKind::Geometry) base = geometry++;
+    if (layer.kind == kind) specs[base].shading.specular = specs[base].shading.textures = std::nullopt;
+  }
+  factor_again(variant);
+}
+
+/// Ids of the geometry layers in the order in which the first frame shows them, merged ones side by side.
+std::vector<int> first_order(const Variant& variant) {
+  const Pipeline pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
+  PipelineState state(pipeline);
+  const FrameReport report = step(pipeline, state, 0, nullptr);
+  const std::vector<Layer>& layers = with_aggregates(pipeline, state).layers.layers;
+  std::vector<int> order;
+  for (const int id : report.order.back_to_front)
+    if (layers[id].is_aggregate())
+      order.insert(order.end(), layers[id].members.begin(), layers[id].members.end());
+    else if (layers[id].base < 0)
+      order.push_back(id);
+  return order;
+}
+
+void order_by_groups(Variant& variant) {
+  std::vector<LayerSpec>& specs = variant.sequence.layer_specs;
+  const std::vector<int> seen = first_order(variant);
+  std::vector<std::tuple<layers::OrderGroup, std::size_t, std::size_t>> places;  // group, rank, spec
+  for (const Layer& layer : variant.sequence.layers.layers)
+    if (layer.kind == LayerKind::Geometry)
+      places.emplace_back(layer.group, std::find(seen.begin(), seen.end(), layer.id) - seen.begin(),
+                          places.size());
+  std::sort(places.begin(), places.end());
+  for (std::size_t place = 0; place < places.size(); ++place)
+    specs[std::get<2>(places[place])].group = static_cast<layers::OrderGroup>(place);
+  variant.sequence.explicit_order.clear();
+  variant.settings.explicit_order.clear();
+  factor_again(variant);
+}
+
+void stop_following_light(regulator::RegulatorOptions& options) {
+  options.color_warp = false;
+  options.photometric = options.light_angle_rad = 0;
+}
+
+void remove(Variant& variant, Effect effect) {
+  switch (effect) {
+    case Effect::Texture:
+      return change_scene(variant, remove_textures);
+    case Effect::MipFilter:
+      variant.settings.render.mipmaps = false;
+      return;
+    case Effect::Lighting:
+      return change_scene(variant, remove_lighting);
+    case Effect::SpecularHighlight:
+      return change_scene(variant, remove_highlights);
+    case Effect::Translucency:
+      keep_casters(variant);
+      return change_scene(variant, remove_translucency);
+    case Effect::Skinning:
+      return change_scene(variant, remove_skins);
+    case Effect::LayerResolution:
+      return change_preferences(variant, [](LayerPreferences& p) { p.resolution_scale = 1; });
+    case Effect::MotionBlur:
+      return change_preferences(variant, [](LayerPreferences& p) { p.motion_blur = 0; });
+    case Effect::SpriteCompression:
+      variant.sequence.compression.reset();
+      variant.settings.compression.reset();
+      return;
+    case Effect::VisibilitySort:
+      return order_by_groups(variant);
+    case Effect::ColorWarp:
+      stop_following_light(variant.sequence.regulator);
+      stop_following_light(variant.settings.regulator);
+      return;
+    case Effect::ShadowMap:
+      return change_scene(variant, remove_shadows);
+    case Effect::ShadowLayer:
+      return remove_shade_layers(variant, LayerKind::Shadow, &layers::ShadingSpec::shadows);
+    case Effect::SpecularLayer:
+      return remove_shade_layers(variant, LayerKind::Specular, &layers::ShadingSpec::specular);
+    case Effect::ReflectionMap:
+      return change_scene(variant, remove_mirrors);
+    case Effect::ReflectionLayer:
+      return remove_shade_layers(variant, LayerKind::Reflection, &layers::ShadingSpec::reflection);
+    case Effect::TextureLayers:
+      return remove_shade_layers(variant, LayerKind::Texture, &layers::ShadingSpec::textures);
+  }
+}
+
+}  // namespace
+
+std::vector<layers::EffectCall> effects_of(const Variant& variant) {
+  return layers::effects_called_for(*variant.sequence.scene, variant.sequence.layers.layers,
+                                    run_effects(variant.settings));
+}
+
+layers::EffectCall effect_call(const Variant& variant, Effect effect) {
+  for (layers::EffectCall& call : effects_of(variant))
+    if (call.effect == effect) return call;
+  return {};
+}
+
+Variant without_effect(const Variant& given, Effect effect) {
+  TALISMAN_CHECK(!given.sequence.layer_specs.empty());
+  Variant variant = given;
+  if (effect_call(given, effect).called) remove(variant, effect);
+  return variant;
+}
+
+}  // namespace talisman::sequences

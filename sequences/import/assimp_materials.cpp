@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+
+#include "sequences/import/assimp_scene.h"
+#include "sequences/content/tile_image.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr float kMaxShininess = 1024;
+constexpr float kDielectric = 0.04f;   // reflectance of common non-metals at normal incidence
+constexpr std::size_t kShortStem = 8;  // DOS names, as 3DS files write them
+
+std::string lower(std::string s) {
+  for (char& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return s;
+}
+
+/// The file in `folder` whose name is `name` but for letter case; else one whose stem is cut to the same 8
+/// characters, if possible with the same extension (gl-117 writes .RGB and ships .tga).
+std::string find_in(const fs::path& folder, const std::string& name) {
+  const std::string wanted = lower(name),
+                    wanted_stem = lower(fs::path(name).stem().string()).substr(0, kShortStem);
+  const std::string wanted_extension = lower(fs::path(name).extension().string());
+  std::set<std::pair<bool, std::string>> similar;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (!entry.is_regular_file(error)) continue;
+    const std::string found = lower(entry.path().filename().string());
+    if (found == wanted) return entry.path().string();
+    if (wanted_stem.empty() || lower(entry.path().stem().string()).substr(0, kShortStem) != wanted_stem)
+      continue;
+    const bool other = lower(entry.path().extension().string()) != wanted_extension;
+    similar.emplace(other, entry.path().string());  // sorted: the order in a folder is nobody's choice
+  }
+  return similar.empty() ? std::string() : similar.begin()->second;
+}
+
+layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
+  if (from.mHeight == 0) {
+    const auto* bytes = reinterpret_cast<const std::uint8_t*>(from.pcData);
+    const std::string format = from.achFormatHint[0] ? from.achFormatHint : "png";
+    return read_texture_from_bytes({bytes, from.mWidth}, name, format);
+  }
+  layers::Texture texture;
+  texture.name = name;
+  texture.width = static_cast<int>(from.mWidth);
+  texture.height = static_cast<int>(from.mHeight);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(from.mWidth) * from.mHeight; ++i) {
+    const aiTexel& t = from.pcData[i];
+    texture.rgba.insert(texture.rgba.end(), {t.r, t.g, t.b, t.a});
+    texture.has_alpha |= t.a < 255;
+  }
+  return texture;
+}
+
+layers::Texture read_reference(const Import& import, const std::string& reference) {
+  if (const aiTexture* embedded = import.from.GetEmbeddedTexture(reference.c_str()))
+    return read_embedded(*embedded, reference);
+  const std::string file = find_texture(import.path, reference);
+  if (file.empty()) throw InputError("is missing");
+  layers::Texture texture = read_texture(file);
+  texture.name = fs::path(file).filename().string();
+  return texture;
+}
+
+void make_opaque(layers::Texture& texture) {
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i] = 255;
+  texture.has_alpha = false;
+}
+
+/// Index of the material's colour texture; -1: none, or missing (a warning, once per reference).
+int material_texture(Import& import, const aiMaterial& from, bool opaque) {
+  aiString written;
+  if (from.GetTexture(aiTextureType_BASE_COLOR, 0, &written) != aiReturn_SUCCESS &&
+      from.GetTexture(aiTextureType_DIFFUSE, 0, &written) != aiReturn_SUCCESS)
+    return -1;
+  const std::string reference = written.C_Str();
+  if (reference.empty()) return -1;
+  const auto [entry, is_new] = import.texture_of.emplace((opaque ? "opaque:" : "") + reference, -1);
+  if (!is_new) return entry->second;
+  try {
+    layers::Texture texture = read_reference(import, reference);
+    if (opaque) make_opaque(texture);
+    import.model.scene.textures.push_back(std::move(texture));
+    entry->second = static_cast<int>(import.model.scene.textures.size()) - 1;
+  } catch (const InputError& e) {
+    import.warn("texture '" + reference + "': " + e.what() + "; a plain colour is used");
+  }
+  return entry->second;
+}
+
+float clean(float value, float low, float high, float otherwise) {
+  return std::isfinite(value) ? std::clamp(value, low, high) : otherwise;
+}
+
+layers::vec3 to_color(const Import& import, const aiColor4D& c) {
+  const layers::vec3 file(clean(c.r, 0, 100, 0), clean(c.g, 0, 100, 0), clean(c.b, 0, 100, 0));
+  if (import.is_gltf) return file;
+  return {linear_from_srgb(file.x), linear_from_srgb(file.y), linear_from_srgb(file.z)};
+}
+
+template <typename T>
+T property(const aiMaterial& from, const char* key, unsigned type, unsigned index, T otherwise) {
+  T value = otherwise;
+  return from.Get(key, type, index, value) == aiReturn_SUCCESS ? value : otherwise;
+}
+
+/// Roughness and metalness as the Blinn-Phong lobe of about the same width; see model_import.h.
+void import_pbr_gloss(const aiMaterial& from, layers::Material& to) {
+  const float roughness = clean(property(from, AI_MATKEY_ROUGHNESS_FACTOR, 1.0f), 0.05f, 1, 1);
+  const float metallic = clean(property(from, AI_MATKEY_METALLIC_FACTOR, 0.0f), 0, 1, 0);
+  to.specular = glm::mix(layers::vec3(kDielectric), to.base_color, metallic) * (1 - roughness);
+  to.shininess = std::min(kMaxShininess, 2 / std::pow(roughness, 4.0f) - 2);
+}
+
+void import_phong_gloss(const Import& import, const aiMaterial& from, layers::Material& to) {
+  const float strength = clean(property(from, AI_MATKEY_SHININESS_STRENGTH, 1.0f), 0, 1, 1);
+  to.specular = to_color(import, property(from, AI_MATKEY_COLOR_SPECULAR, aiColor4D(0, 0, 0, 1))) * strength;
+  to.shininess = clean(property(from, AI_MATKEY_SHININESS, 0.0f), 0, kMaxShininess, 0);
+}
+
+layers::Material import_material(Import& import, const aiMaterial& from) {
+  layers::Material to;
+  to.name = from.GetName().C_Str();
+  const aiColor4D diffuse = property(from, AI_MATKEY_COLOR_DIFFUSE, aiColor4D(0.8f, 0.8f, 0.8f, 1));
+  const aiColor4D base = property(from, AI_MATKEY_BASE_COLOR, diffuse);
+  const bool opaque = std::string(property(from, AI_MATKEY_GLTF_ALPHAMODE, aiString()).C_Str()) == "OPAQUE";
+  to.base_color = to_color(import, base);
+  to.opacity = opaque ? 1 : clean(property(from, AI_MATKEY_OPACITY, base.a), 0, 1, 1);
+  to.emissive = to_color(import, property(from, AI_MATKEY_COLOR_EMISSIVE, aiColor4D(0, 0, 0, 1)));
+  to.two_sided = property(from, AI_MATKEY_TWOSIDED, 0) != 0;
+  to.texture = material_texture(import, from, opaque);
+  float roughness = 0;
+  if (from.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) == aiReturn_SUCCESS)
+    import_pbr_gloss(from, to);
+  else
+    import_phong_gloss(import, from, to);
+  if (to.shininess < 1)
+    to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
+  return to;
+}
+
+}  // namespace
+
+std::string find_texture(const std::string& model_path, const std::string& written) {
+  std::string path = written;
+  std::replace(path.begin(), path.end(), '\\', '/');
+  const fs::path folder = fs::absolute(model_path).parent_path();
+  std::error_code error;
+  for (const fs::path& candidate : {folder / path, fs::path(path)})
+    if (fs::is_regular_file(candidate, error)) return candidate.string();
+  const std::string name = fs::path(path).filename().string();
+  for (const fs::path& place : {folder, folder.parent_path() / "textures", folder / "textures"}) {
+    const std::string found = find_in(place, name);
+    if (!found.empty()) return found;
+  }
+  return {};
+}
+
+void import_materials(Import& import) {
+  for (unsigned i = 0; i < import.from.mNumMaterials; ++i) {
+    const aiMaterial* from = import.from.mMaterials[i];
+    import.model.scene.materials.push_back(from ? import_material(import, *from) : layers::Material{});
+  }
+  if (import.model.scene.materials.empty()) import.model.scene.materials.push_back({});
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "sequences/import/assimp_scene.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+constexpr double kDefaultTicksPerSecond = 25;  // assimp's word for "the file does not say"
+constexpr double kDefaultFov_rad = 0.9;
+constexpr double kWidestCone_rad = std::numbers::pi / 2;  ///< a half-space
+
+/// Keys in seconds with strictly increasing times; of equal times the first is kept. Keys that are no numbers
+/// are left out.
+template <typename Value, typename Key, typename Convert>
+layers::Keys<Value> to_keys(const Key* keys, unsigned count, double seconds_per_tick, Convert convert) {
+  layers::Keys<Value> result;
+  for (unsigned i = 0; keys && i < count; ++i) {
+    const double time = keys[i].mTime * seconds_per_tick;
+    const Value value = convert(keys[i].mValue);
+    bool usable = std::isfinite(time);
+    for (int k = 0; k < value.length(); ++k) usable = usable && std::isfinite(value[k]);
+    if (!usable || (!result.times_s.empty() && time <= result.times_s.back())) continue;
+    result.times_s.push_back(time);
+    result.values.push_back(value);
+  }
+  return result;
+}
+
+glm::dquat to_unit(const aiQuaternion& q) {
+  const glm::dquat raw = to_quaternion(q);
+  const double length = glm::length(raw);
+  return length > 1e-12 ? raw / length : glm::dquat(1, 0, 0, 0);
+}
+
+void import_channel(Import& import, const aiNodeAnim& channel, double seconds_per_tick) {
+  const auto node = import.node_named.find(channel.mNodeName.C_Str());
+  if (node == import.node_named.end()) return;
+  layers::TransformTrack track;
+  track.loop = true;
+  track.translation =
+      to_keys<layers::dvec3>(channel.mPositionKeys, channel.mNumPositionKeys, seconds_per_tick, to_vector);
+  track.rotation =
+      to_keys<glm::dquat>(channel.mRotationKeys, channel.mNumRotationKeys, seconds_per_tick, to_unit);
+  track.scale =
+      to_keys<layers::dvec3>(channel.mScalingKeys, channel.mNumScalingKeys, seconds_per_tick, to_vector);
+  import.model.scene.tracks.push_back({node->second, std::move(track)});
+}
+
+int node_or_none(const Import& import, const aiString& name) {
+  const auto node = import.node_named.find(name.C_Str());
+  return node == import.node_named.end() ? -1 : node->second;
+}
+
+bool is_finite(const layers::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+/// Half the opening angle. glTF has angles from the axis, all other formats those of the whole cone; assimp
+/// hands on what the file says.
+double cone_angle_rad(const Import& import, float angle_rad) {
+  const double half = import.is_gltf ? angle_rad : angle_rad / 2.0;
+  return std::isfinite(half) ? std::clamp(half, 0.0, kWidestCone_rad) : kWidestCone_rad;
+}
+
+void import_cone(Import& import, const aiLight& from, layers::Light& to) {
+  to.outer_cone_rad = cone_angle_rad(import, from.mAngleOuterCone);
+  to.inner_cone_rad = std::min(cone_angle_rad(import, from.mAngleInnerCone), to.outer_cone_rad);
+  if (to.outer_cone_rad > 0) return;
+  import.warn("light '" + to.name + "' is a spot without an angle; it shines into a half-space");
+  to.outer_cone_rad = to.inner_cone_rad = kWidestCone_rad;
+}
+
+/// The light, or nothing when its kind cannot be kept.
+bool import_light(Import& import, const aiLight& from, layers::Light& to) {
+  to.name = from.mName.C_Str();
+  to.node = node_or_none(import, from.mName);
+  to.position = to_vector(from.mPosition);
+  to.direction = to_vector(from.mDirection);
+  to.color = {from.mColorDiffuse.r, from.mColorDiffuse.g, from.mColorDiffuse.b};
+  switch (from.mType) {
+    case aiLightSource_DIRECTIONAL:
+      to.kind = layers::Light::Kind::Directional;
+      break;
+    case aiLightSource_SPOT:
+      to.kind = layers::Light::Kind::Spot;
+      import_cone(import, from, to);
+      break;
+    case aiLightSource_POINT:
+      to.kind = layers::Light::Kind::Point;
+      break;
+    case aiLightSource_AMBIENT:
+      to.kind = layers::Light::Kind::Ambient;
+      to.color = {from.mColorAmbient.r, from.mColorAmbient.g, from.mColorAmbient.b};
+      break;
+    default:
+      import.warn("light '" + to.name + "' is of a kind that is not simulated");
+      return false;
+  }
+  const bool has_direction =
+      to.kind == layers::Light::Kind::Directional || to.kind == layers::Light::Kind::Spot;
+  if (has_direction && !(glm::length(to.direction) > 0)) to.direction = {0, 0, -1};
+  for (int k = 0; k < 3; ++k)
+    if (!(to.color[k] >= 0 && std::isfinite(to.color[k]))) to.color[k] = 0;
+  return is_finite(to.position) && is_finite(to.direction);
+}
+
+/// A node that looks along its own -z, below the camera's own node.
+int add_view_node(Import& import, const aiCamera& from) {
+  layers::Node view;
+  view.name = std::string(from.mName.C_Str()) + "#view";
+  view.parent = node_or_none(import, from.mName);
+  view.local.translation = to_vector(from.mPosition);
+  const layers::dvec3 ahead = to_vector(from.mLookAt), up = to_vector(from.mUp);
+  const layers::dvec3 right = glm::cross(ahead, up);
+  if (glm::length(right) > 1e-9 && is_finite(right)) {
+    const layers::dvec3 x = glm::normalize(right), z = -glm::normalize(ahead);
+    view.local.rotation = glm::normalize(glm::quat_cast(glm::dmat3(x, glm::cross(z, x), z)));
+  }
+  import.model.scene.nodes.push_back(view);
+  return static_cast<int>(import.model.scene.nodes.size()) - 1;
+}
+
+double fov_y(const aiCamera& from) {
+  const double aspect = from.mAspect > 0 ? from.mAspect : 1.0;
+  const double fov = 2 * std::atan(std::tan(from.mHorizontalFOV / 2.0) / aspect);
+  return std::isfinite(fov) && fov > 0.01 && fov < 3 ? fov : kDefaultFov_rad;
+}
+
+}  // namespace
+
+void import_motion(Import& import) {
+  if (import.from.mNumAnimations == 0 || !import.from.mAnimations || !import.from.mAnimations[0]) return;
+  if (import.from.mNumAnimations > 1)
+    import.warn(std::to_string(import.from.mNumAnimations) + " animations; only the first is played");
+  const aiAnimation& animation = *import.from.mAnimations[0];
+  const double ticks = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : kDefaultTicksPerSecond;
+  for (unsigned c = 0; c < animation.mNumChannels; ++c)
+    if (animation.mChannels[c]) import_channel(import, *animation.mChannels[c], 1 / ticks);
+}
+
+void import_lights(Import& import) {
+  auto& lights = import.model.scene.lights;
+  for (unsigned i = 0; i < import.from.mNumLights; ++i) {
+    layers::Light light;
+    if (import.from.mLights[i] && import_light(import, *import.from.mLights[i], light))
+      lights.push_back(light);
+  }
+  float brightest = 1;
+  for (const layers::Light& light : lights)
+    for (int k = 0; k < 3; ++k) brightest = std::max(brightest, light.color[k]);
+  for (layers::Light& light : lights) light.color /= brightest;
+}
+
+void import_cameras(Import& import) {
+  for (unsigned i = 0; i < import.from.mNumCameras; ++i) {
+    const aiCamera* from = import.from.mCameras[i];
+    if (!from) continue;
+    layers::Camera camera;
+    camera.name = from->mName.C_Str();
+    camera.node = add_view_node(import, *from);
+    camera.fov_y_rad = fov_y(*from);
+    const double near_m = from->mClipPlaneNear, far_m = from->mClipPlaneFar;
+    if (near_m > 0 && far_m > near_m && std::isfinite(far_m)) camera.near_m = near_m, camera.far_m = far_m;
+    import.model.scene.cameras.push_back(camera);
+  }
+}
+
+}  // namespace talisman::sequences

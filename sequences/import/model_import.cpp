@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/import/model_import.h"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <sstream>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include "sequences/content/asset_paths.h"
+
+extern char** environ;
+
+namespace talisman::sequences {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kKeptErrors = 64 * 1024;
+
+/// Closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd = -1) : fd_(fd) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  void reset(int fd) {
+    close();
+    fd_ = fd;
+  }
+  void close() {
+    if (fd_ >= 0) ::close(fd_);
+    fd_ = -1;
+  }
+  int get() const { return fd_; }
+
+ private:
+  int fd_;
+};
+
+struct Pipe {
+  Pipe() {
+    int ends[2];
+    if (::pipe2(ends, O_CLOEXEC) != 0) throw OutputError(std::string("no pipe: ") + std::strerror(errno));
+    read.reset(ends[0]);
+    write.reset(ends[1]);
+  }
+  Descriptor read, write;
+};
+
+/// The running child; it is killed and collected whatever happens.
+class Child {
+ public:
+  Child(const std::vector<std::string>& arguments, Pipe& out, Pipe& errors) {
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+    posix_spawn_file_actions_adddup2(&actions, out.write.get(), STDOUT_FILENO);
+    posix_spawn_file_actions_adddup2(&actions, errors.write.get(), STDERR_FILENO);
+    std::vector<char*> argv;
+    for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+    argv.push_back(nullptr);
+    // Its own process group: an interrupt from the terminal is for us, who decide what becomes of the child.
+    posix_spawnattr_t attributes;
+    posix_spawnattr_init(&attributes);
+    posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+    const int error = ::posix_spawn(&pid_, argv[0], &actions, &attributes, argv.data(), environ);
+    posix_spawnattr_destroy(&attributes);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0)
+      throw OutputError(arguments[0] + ": " + std::strerror(error) + "; it is built with the tool");
+    out.write.close();
+    errors.write.close();
+  }
+  ~Child() {
+    if (pid_ <= 0) return;
+    ::kill(pid_, SIGKILL);
+    wait();
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  /// The wait status.
+  int wait() {
+    int status = 0;
+    while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
+    pid_ = -1;
+    return status;
+  }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+struct Outcome {
+  std::vector<std::uint8_t> bytes;
+  std::string errors;
+  bool timed_out = false, too_long = false;
+  int status = 0;
+};
+
+/// Reads what is there. False at the end of the stream.
+template <typename Bytes>
+bool read_some(Descriptor& fd, Bytes& into) {
+  std::array<char, 65536> buffer;
+  const ssize_t n = ::read(fd.get(), buffer.data(), buffer.size());
+  if (n < 0 && errno == EINTR) return true;
+  if (n <= 0) {
+    fd.close();
+    return false;
+  }
+  into.insert(into.end(), buffer.data(), buffer.data() + n);
+  return true;
+}
+
+int milliseconds_until(Clock::time_point deadline) {
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(deadline - Clock::now()).count();
+  return left > 0 ? static_cast<int>(left) : 0;
+}
+
+/// Both streams until both end, or until the deadline.
+void drain(Pipe& out, Pipe& errors, const ImportLimits& limits, Outcome& outcome) {
+  const auto deadline = Clock::now() + std::chrono::seconds(limits.seconds);
+  const std::size_t most = static_cast<std::size_t>(limits.megabytes) << 20;
+  while (out.read.get() >= 0 || errors.read.get() >= 0) {
+    pollfd fds[2] = {{out.read.get(), POLLIN, 0}, {errors.read.get(), POLLIN, 0}};
+    const int ready = ::poll(fds, 2, milliseconds_until(deadline));
+    if (ready < 0 && errno == EINTR) continue;
+    outcome.timed_out = ready == 0;
+    outcome.too_long = outcome.bytes.size() > most;
+    if (ready <= 0 || outcome.too_long) return;
+    if (fds[0].revents) read_some(out.read, outcome.bytes);
+    if (fds[1].revents) read_some(errors.read, outcome.errors);
+    if (outcome.errors.size() > kKeptErrors) outcome.errors.erase(0, outcome.errors.size() - kKeptErrors / 2);
+  }
+}
+
+Outcome run(const std::vector<std::string>& arguments, const ImportLimits& limits) {
+  Outcome outcome;
+  Pipe out, errors;
+  Child child(arguments, out, errors);
+  drain(out, errors, limits, outcome);
+  if (!outcome.timed_out && !outcome.too_long) outcome.status = child.wait();
+  return outcome;
+}
+
+/// The text behind the last "error: " line; empty when there is none.
+std::string last_error(const std::string& output) {
+  std::istringstream lines(output);
+  std::string found;
+  for (std::string line; std::getline(lines, line);)
+    if (line.rfind("error: ", 0) == 0) found = line.substr(7);
+  return found;
+}
+
+/// What went wrong with the child, in words; empty when nothing did.
+std::string failure(const Outcome& outcome, const ImportLimits& limits) {
+  const std::string too_slow =
+      "takes longer to read than the limit of " + std::to_string(limits.seconds) + " s";
+  if (outcome.timed_out) return too_slow;
+  if (outcome.too_long) return "is larger than the limit of " + std::to_string(limits.megabytes) + " MB";
+  if (WIFSIGNALED(outcome.status)) {
+    const int signal = WTERMSIG(outcome.status);
+    if (signal == SIGXCPU || signal == SIGKILL) return too_slow;
+    return "crashed its reader (signal " + std::to_string(signal) + ", " + ::strsignal(signal) + ")";
+  }
+  if (WEXITSTATUS(outcome.status) == kSuccess) return {};
+  const std::string why = last_error(outcome.errors);
+  return why.empty() ? "its reader failed with exit code " + std::to_string(WEXITSTATUS(outcome.status))
+                     : why;
+}
+
+}  // namespace
+
+ImportedModel import_model(const std::string& path, const ImportLimits& limits) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error))
+    throw InputError(std::filesystem::exists(path, error) ? "is not a file" : "does not exist", path);
+  const Outcome outcome = run({program_folder() + "/talisman_import", path, std::to_string(limits.seconds),
+                               std::to_string(limits.megabytes)},
+                              limits);
+  if (const std::string what = failure(outcome, limits); !what.empty()) throw InputError(what, path);
+  try {
+    return model_from_bytes(outcome.bytes);
+  } catch (const InputError& e) {
+    throw InputError(e.what(), path);
+  }
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Curves as pictures, with the numbers beside them: NAME.svg drawn by gnuplot, and NAME.csv, one line per
+/// point (`series,x,y`; the header names quantity and unit).
+///
+/// Colours are those of Okabe and Ito (told apart by colour-blind readers); markers differ too, for grey
+/// print.
+
+#include <string>
+#include <vector>
+
+#include "sequences/files/errors.h"
+
+namespace talisman::sequences {
+
+/// A point that is not finite, or ≤ 0 on a logarithmic axis, leaves a gap in the curve.
+struct PlotPoint {
+  double x = 0, y = 0;
+};
+
+/// Cloud: small translucent points, of which there may be thousands.
+enum class SeriesStyle { Line, Points, LinePoints, Steps, Cloud };
+
+struct PlotSeries {
+  std::string name;  ///< in the legend and in the CSV
+  std::vector<PlotPoint> points;
+  SeriesStyle style = SeriesStyle::LinePoints;
+  std::vector<std::string> labels =
+      {};  ///< written beside the points, one for each; empty: none. Not in the CSV
+};
+
+struct PlotAxis {
+  std::string label;  ///< quantity: "update rate"
+  std::string unit;   ///< "px", "ms", "%"; empty: none
+  bool logarithmic = false;
+};
+
+struct Plot {
+  std::string title;
+  PlotAxis x, y;
+  std::vector<PlotSeries> series;
+};
+
+struct PlotFiles {
+  bool script = false;                  ///< also keep NAME.gp, the gnuplot input
+  int width_px = 800, height_px = 500;  ///< of the picture; 100 … 10000
+};
+
+/// The CSV text. Numbers are written so that reading them gives the same doubles; not-a-number and infinity
+/// as empty fields.
+std::string plot_csv(const Plot& plot);
+
+/// The gnuplot input; draws SVG to the standard output. No text of the plot can leave its quotes.
+std::string plot_script(const Plot& plot, const PlotFiles& files = {});
+
+/// Writes DIR/NAME.csv and DIR/NAME.svg (each whole or not at all). Throws OutputError: not writable, gnuplot
+/// missing or failing.
+void write_plot(const std::string& dir, const std::string& name, const Plot& plot,
+                const PlotFiles& files = {});
+
+}  // namespace talisman::sequences

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The visibility order of a run, frame after frame, and the layers that it makes on the way [LS97 2.2].
+///
+/// Only layers with something on the display take part. Where layers occlude each other in a cycle they are
+/// merged: an aggregate (layers/aggregate.h) gets an id behind those of the author's layers and is from then
+/// on a layer like others, with its own memory, assessment, decision and sprite. While it lasts its members
+/// are dropped; what is remembered of them stays, so that after the split their old sprites are shown again
+/// as long as the fiducials allow it. The sprite of an aggregate is kept as well, and dropped when the
+/// aggregate has been gone for kKeepAggregate_frames; then its id is free for another one. So the tables that
+/// grow with the ids, and with them the time of a frame, stay bounded however long a run is. The same set of
+/// layers has the same name and the same serial number for the whole run: what the results list, they list by
+/// these.
+///
+/// With the extended compositor most cycles are not merged (sequences/pipeline/resolved_cycles.h).
+///
+/// Policies that look ahead (Lookahead, Oracle) judge every layer, aggregates included, as if the grouping of
+/// the frame that is planned lasted: they do not foresee merging and splitting.
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sequences/pipeline/frame_order.h"
+
+namespace talisman::sequences {
+
+struct Pipeline;
+struct PipelineState;
+struct FrameReport;
+
+/// The pipeline with the aggregates behind the author's layers. Never changed, so that copies of a state can
+/// share it.
+struct GrownPipeline;
+
+/// An aggregate of this run, existing or not: a line of its summary.
+struct AggregateRecord {
+  std::string name;  ///< that of no other layer
+  int parts = 0, polygons = 0;
+};
+
+/// All aggregates of a run. Some hundred bytes each.
+struct AggregateHistory {
+  std::vector<AggregateRecord> records;       ///< by serial number, in the order in which they first existed
+  std::map<std::vector<int>, int> serial_of;  ///< by the ids of the members
+  std::map<std::string, int> names;           ///< of all layers; the suffix to try for the next of that name
+};
+
+/// One id behind those of the author's layers.
+struct AggregateSlot {
+  int serial = -1;     ///< of the aggregate that has it, or had it last
+  int last_seen = -1;  ///< the last frame in which that existed
+  bool is_free = false;
+};
+
+/// What is remembered of the order from frame to frame. A value.
+struct OrderMemory {
+  layers::VisibilitySorter sorter;
+  std::shared_ptr<const GrownPipeline> grown;  ///< null: no aggregate was made yet
+  std::vector<int> merged_into;                ///< of the last frame, by layer id
+  std::vector<AggregateSlot> slots;            ///< by id, from the first behind the author's layers
+  AggregateHistory history;
+  int frame = -1;      ///< the last frame that was ordered
+  int generation = 0;  ///< grows with every change of the aggregates that exist
+};
+
+/// The frames after which the sprite and the memory of an aggregate that no longer exists are given up. More
+/// keeps sprites of cycles that return, and their memory.
+inline constexpr int kKeepAggregate_frames = 48;
+
+/// `authored` with the aggregates that exist, or have lately; `authored` itself as long as there are none.
+const Pipeline& with_aggregates(const Pipeline& authored, const PipelineState& state);
+const Pipeline& with_aggregates(const Pipeline& authored, const GrownPipeline* grown);
+
+/// Does the aggregate (or any other layer) `layer` exist in the frame that was ordered last?
+bool exists_now(const Pipeline& pipeline, const PipelineState& state, int layer);
+
+/// The order of frame `frame`; merges and splits. Frames must come in order. Cost: layers/visibility.h.
+FrameOrder order_layers(const Pipeline& authored, PipelineState& state, int frame);
+
+/// The layers that have a line in decisions.jsonl for this frame, in their order: the author's by id, then
+/// the aggregates that exist by serial number.
+std::vector<int> layers_with_lines(const PipelineState& state, const FrameReport& report);
+
+/// The row of a layer in tables that list every layer of a run: its id, aggregates by serial number.
+int row_in_run(const PipelineState& state, int layer);
+
+/// Puts what was merged and split into the reasons of the plan.
+void explain_order(const Pipeline& pipeline, FrameReport& report);
+
+}  // namespace talisman::sequences

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// As of which instant is a layer drawn that must be drawn now? Policies Lookahead and Oracle.
+///
+/// The paper draws a sprite as it looks now, so that its error only grows. With the motion known ahead
+/// [F96] it can be drawn as it will look in the middle of the frames that it is to serve, and be warped back
+/// first and forward later. Whether a sprite of instant r serves frame f is judged by what `step` will judge
+/// when f comes: the same states, placement, fit, fiducials and thresholds. So the run that is promised is
+/// the run that comes true. The instants are confined to `lookahead_frames` (or are all of the sequence);
+/// how long a sprite will last is judged to the sequence's end.
+///
+/// With Prediction::Linear the frames ahead are those of layers/predict.h, made from the frame at hand and
+/// the one before, and a sprite's life is judged 2 N frames ahead. The sprite is drawn as of the *expected*
+/// instant, so what it shows may never come true. Therefore it is judged, here for the frame at hand and by
+/// `step` for every later one, by the state that was really drawn against the state that really came: a frame
+/// that it does not serve is drawn as of now. So the bound of the displayed error holds whatever was
+/// expected; a wrong expectation costs renders, not error.
+
+#include "regulator/schedule.h"
+#include "sequences/pipeline/step.h"
+
+namespace talisman::sequences {
+
+/// The instant that serves the longest run from `frame` on, and that run. The layer is in view at `frame`.
+/// Cost: capture, placement and assessment (some µs) of each instant that may be chosen and of each frame of
+/// the runs that win; memory: the states of every frame looked at, some kB per layer.
+regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState& state, int layer, int frame);
+
+}  // namespace talisman::sequences

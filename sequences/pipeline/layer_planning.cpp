@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/pipeline/layer_planning.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "fiducials/fiducials.h"
+#include "layers/built_effects.h"
+#include "layers/predict.h"
+#include "layers/shade_state.h"
+#include "regulator/resolution.h"
+#include "sequences/pipeline/light_planning.h"
+#include "sequences/pipeline/motion_blur.h"
+#include "warp/quadrilateral.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using layers::Layer;
+using layers::LayerState;
+using layers::SceneFrame;
+using layers::SpritePlacement;
+using regulator::LayerAssessment;
+using regulator::Policy;
+
+bool is_blurred(const layers::LayerPreferences& preferences) {
+  return layers::is_built(layers::Effect::MotionBlur) && preferences.motion_blur > 0;
+}
+
+/// Texels per display pixel that the layer's author asks for.
+double own_resolution(const Layer& layer) {
+  return layers::is_built(layers::Effect::LayerResolution) ? layer.preferences.resolution_scale : 1;
+}
+
+/// Extents grow by velocity × `expected_reuse`; `soon` is the state one frame later. `resolution` is
+/// relative to what the layer's author asks for.
+SpritePlacement place_layer(const Pipeline& pipeline, const LayerState& now, const LayerState& soon,
+                            double expected_reuse, double resolution = 1) {
+  const Layer& layer = pipeline.layers.layers[now.layer];
+  layers::ExtentOptions extents = pipeline.settings.extents;
+  extents.expected_reuse_frames = expected_reuse * layer.preferences.share_of_expected_motion;
+  layers::PlacementOptions placement = pipeline.settings.placement;
+  placement.resolution_scale *= own_resolution(layer) * resolution;
+  if (is_blurred(layer.preferences)) apply_motion_blur(pipeline, now, placement);
+  return layers::place_sprite(now, soon, pipeline.bounds[layer.id].hull, extents, placement);
+}
+
+/// The cost before the placement is known: the part of the layer's bounds that is on the display.
+regulator::LayerCost estimated_cost(const Layer& layer, const LayerState& now) {
+  const layers::RectD display{{0, 0}, layers::dvec2(now.view.display_px)};
+  const layers::RectD seen = layers::intersection(now.screen_bounds_px, display);
+  const double scale = own_resolution(layer);
+  return cost_of(layer,
+                 {static_cast<int>(seen.width() * scale + 1), static_cast<int>(seen.height() * scale + 1)});
+}
+
+/// For how many frames a new sprite of the layer will probably be moved by a warp: at most what the policy
+/// expects, and no more than twice as long as the old one lasted, so that a layer that is drawn every frame
+/// is not drawn larger than it needs to be. Who looks ahead judges a sprite before it is known when the old
+/// one fails, and so for no one layer's past.
+double expected_reuse_frames(const Pipeline& pipeline, const LayerMemory& memory, int frame) {
+  const double by_policy = regulator::expected_reuse_frames(pipeline.settings.regulator,
+                                                            pipeline.settings.extents.expected_reuse_frames);
+  if (looks_ahead(pipeline) || !memory.then) return by_policy;
+  return std::min(by_policy, 2.0 * std::abs(frame - memory.frame_rendered));
+}
+
+/// Where the layer's sprite lies if it is rendered at the instant of `frame`, at a regulated resolution.
+SpritePlacement place_regulated(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
+                                double resolution) {
+  const LayerState& now = states_at(pipeline, state, frame)[layer];
+  const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
+  if (!(expected_reuse > 0)) return place_layer(pipeline, now, now, 0, resolution);
+  return place_layer(pipeline, now, states_at(pipeline, state, frame + 1)[layer], expected_reuse, resolution);
+}
+
+/// Sampling is judged by the texels that the layer's author asks for, not by the coarser ones of a sprite
+/// whose resolution was lowered.
+void see_through_resolution(LayerAssessment& assessment, double resolution) {
+  assessment.resolution_then = resolution;
+  if (resolution == 1) return;
+  assessment.fiducials.sampling.magnification /= resolution;
+  assessment.fiducials.sampling.minification /= resolution;
+}
+
+}  // namespace
+
+bool looks_ahead(const Pipeline& pipeline) {
+  const Policy policy = pipeline.settings.regulator.policy;
+  return policy == Policy::Lookahead || policy == Policy::Oracle;
+}
+
+bool predicts(const Pipeline& pipeline) {
+  return pipeline.settings.regulator.policy == regulator::Policy::Lookahead &&
+         pipeline.settings.regulator.predict == regulator::Prediction::Linear;
+}
+
+double time_of(const Pipeline& pipeline, int frame) { return frame / pipeline.settings.fps; }
+
+SceneFrame scene_at(const Pipeline& pipeline, int frame) {
+  return pipeline.scene.at(time_of(pipeline, frame));
+}
+
+SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame) {
+  const SceneFrame now = scene_at(pipeline, known);
+  if (known == frame) return now;
+  return layers::predict_linear(known > 0 ? scene_at(pipeline, known - 1) : now, now, frame - known);
+}
+
+namespace {
+
+using CapturedIterator = std::map<int, CapturedFrame>::iterator;
+
+void forget(PipelineState& state, CapturedIterator first, CapturedIterator last) {
+  for (auto it = first; it != last; ++it) state.forgotten.push_back(std::move(it->second));
+  state.captured.erase(first, last);
+}
+
+/// The frame as it was captured before, or an empty one in the memory of one that was forgotten.
+CapturedFrame& captured_frame(PipelineState& state, int frame) {
+  const auto [it, is_new] = state.captured.try_emplace(frame);
+  if (!is_new || state.forgotten.empty()) return it->second;
+  it->second = std::move(state.forgotten.back());
+  state.forgotten.pop_back();
+  it->second.generation = -1;
+  for (LayerState& layer : it->second.states) layer.layer = -1;
+  it->second.placements.assign(it->second.placements.size(), std::nullopt);
+  return it->second;
+}
+
+}  // namespace
+
+void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
+  const Policy policy = pipeline.settings.regulator.policy;
+  auto& captured = state.captured;
+  if (state.planned_with != pipeline.settings.regulator || predicts(pipeline))
+    forget(state, captured.begin(), captured.end());
+  state.planned_with = pipeline.settings.regulator;
+  state.now = frame;
+  state.motion.reset();
+  if (predicts(pipeline)) {
+    SceneFrame now = scene_at(pipeline, frame);
+    state.motion = MotionKnown{frame, frame > 0 ? scene_at(pipeline, frame - 1) : now, now};
+  }
+  if (policy == Policy::Oracle) return;  // any frame of the sequence may be asked for again
+  forget(state, captured.begin(), captured.lower_bound(frame));
+  if (policy != Policy::Lookahead) forget(state, captured.upper_bound(frame + 1), captured.end());
+}
+
+/// The scene of a frame as far as it is known now.
+SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, int frame) {
+  const bool is_ahead = state.motion && frame > state.motion->frame;
+  return is_ahead
+             ? layers::predict_linear(state.motion->before, state.motion->now, frame - state.motion->frame)
+             : scene_at(pipeline, frame);
+}
+
+const std::vector<LayerState>& states_at(const Pipeline& authored, PipelineState& state, int frame) {
+  CapturedFrame& captured = captured_frame(state, frame);
+  if (captured.generation == state.order.generation) return captured.states;
+  const Pipeline& pipeline = with_aggregates(authored, state);
+  captured.generation = state.order.generation;
+  captured.states.resize(pipeline.layers.layers.size());
+  captured.placements.resize(captured.states.size());
+  std::optional<layers::SceneFrame> scene_frame;  // evaluated only if something is missing
+  std::optional<layers::FrameCapture> capture;
+  for (const Layer& layer : pipeline.layers.layers) {
+    LayerState& layer_state = captured.states[layer.id];
+    if (layer_state.layer == layer.id || !exists_now(pipeline, state, layer.id)) continue;
+    if (!scene_frame) {
+      scene_frame = scene_as_known(pipeline, state, frame);
+      capture.emplace(*scene_frame, pipeline.settings.view);
+    }
+    if (layer.base >= 0)
+      layer_state = layers::shade_state(captured.states[layer.base], layer);
+    else
+      capture->capture(layer, pipeline.bounds[layer.id], layer_state);
+  }
+  if (!scene_frame) return captured.states;
+  layers::capture_influences(*scene_frame, pipeline.layers, captured.states);
+  captured.shadow_maps = shadow_map_keys(pipeline, *scene_frame);
+  return captured.states;
+}
+
+const SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer, int frame) {
+  states_at(pipeline, state, frame);
+  std::optional<SpritePlacement>& known = state.captured.at(frame).placements[layer];
+  if (!known) known = place_regulated(pipeline, state, layer, frame, 1);
+  return *known;
+}
+
+void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
+                     std::vector<LayerAssessment>& assessments) {
+  regulator::regulate_resolutions(assessments, pipeline.settings.regulator);
+  for (LayerAssessment& layer : assessments) {
+    if (!layer.in_view || layer.resolution == 1) continue;
+    std::optional<SpritePlacement>& placement = state.captured.at(frame).placements[layer.layer];
+    placement = place_regulated(pipeline, state, layer.layer, frame, layer.resolution);
+    layer.cost = cost_of(pipeline.layers.layers[layer.layer], placement->size_px);
+  }
+}
+
+SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerState& now) {
+  return place_layer(pipeline, now, now, 0);
+}
+
+regulator::LayerCost cost_of(const Layer& layer, layers::ivec2 size_px) {
+  constexpr int kChunk = chunker::kChunkSize;
+  const std::int64_t w = std::max(size_px.x, 0), h = std::max(size_px.y, 0);
+  regulator::LayerCost cost;
+  cost.polygons = layer.polygons;
+  cost.pixels = w * h;
+  cost.chunks = ((w + kChunk - 1) / kChunk) * ((h + kChunk - 1) / kChunk);
+  cost.bytes = cost.chunks * static_cast<std::int64_t>(sizeof(chunker::Chunk));
+  return cost;
+}
+
+LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
+                              const SpritePlacement& placement, const LayerState& now,
+                              int frames_since_render) {
+  LayerAssessment assessment;
+  assessment.layer = now.layer;
+  assessment.preferences = pipeline.layers.layers[now.layer].preferences;
+  assessment.in_view = assessment.has_sprite = true;
+  assessment.frames_since_render = frames_since_render;
+  assessment.identical = now.same_pixels(then);
+  const layers::Correspondences matched = layers::correspond(then, now, pipeline.bounds[now.layer].hull);
+  // An empty sprite holds nothing of what is in view now, wherever its points went.
+  const bool shows_something = matched.overlap && !placement.empty();
+  assessment.matched_points = shows_something ? static_cast<int>(matched.then_px.size()) : 0;
+  if (assessment.identical)
+    assessment.fitted.status = warp::FitStatus::Converged;  // the identity, without error
+  else
+    assessment.fitted = warp::fit(then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
+  assessment.fiducials = fiducials::assess(then, now, placement, matched, assessment.fitted);
+  if (is_blurred(assessment.preferences)) judge_motion_blur(pipeline, then, now, assessment);
+  assess_light_and_faces(pipeline, then, now, assessment.fiducials);
+  for (std::size_t i = 0; i < matched.then_px.size(); ++i)
+    assessment.held_geometric_px =
+        std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));
+  assessment.held_geometric_px += assessment.fiducials.shade.px;
+  return assessment;
+}
+
+LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int layer_id, int frame) {
+  const Layer& layer = pipeline.layers.layers[layer_id];
+  const LayerMemory& memory = state.memory[layer_id];
+  const LayerState& now = states_at(pipeline, state, frame)[layer_id];
+  LayerAssessment assessment;
+  if (now.touches_display && memory.then)
+    assessment =
+        assess_sprite(pipeline, *memory.then, memory.placement, now, std::abs(frame - memory.frame_rendered));
+  assessment.layer = layer.id;
+  assessment.frames_short_of_area = memory.frames_short_of_area;
+  see_through_resolution(assessment, memory.resolution);
+  assessment.preferences = layer.preferences;
+  assessment.in_view = now.touches_display;
+  assessment.has_sprite = memory.then.has_value();
+  if (!assessment.in_view) return assessment;
+  const bool must_be_exact = pipeline.settings.regulator.policy == Policy::Budget;
+  assessment.cost = must_be_exact ? cost_of(layer, placement_at(pipeline, state, layer_id, frame).size_px)
+                                  : estimated_cost(layer, now);
+  return assessment;
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The decision side of one layer at one frame, as `step` and the search for the best instant to draw
+/// (draw_instant.h) share it: captured states, placement, cost, assessment. No pixel is touched.
+
+#include <vector>
+
+#include "sequences/pipeline/step.h"
+
+namespace talisman::sequences {
+
+/// Does the policy draw sprites as of instants other than now?
+bool looks_ahead(const Pipeline& pipeline);
+
+/// Are the frames ahead predicted rather than known?
+bool predicts(const Pipeline& pipeline);
+
+double time_of(const Pipeline& pipeline, int frame);
+
+/// The scene at `frame` as it is known or, where frames ahead are predicted, as it is expected in frame
+/// `known` ≤ `frame` from that frame and the one before.
+layers::SceneFrame scene_at(const Pipeline& pipeline, int frame);
+layers::SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame);
+
+/// Makes `frame` the frame that is planned: forgets what is past, what was only expected, and what was
+/// judged under other options.
+void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame);
+
+/// The states of all layers at `frame`, by layer id; captured once and kept in `state` (a frame ahead that
+/// was looked at is not captured again when it comes). Aggregates (sequences/pipeline/aggregates.h) are captured if
+/// they exist in the frame that was ordered last. The reference holds until aggregates are made.
+const std::vector<layers::LayerState>& states_at(const Pipeline& pipeline, PipelineState& state, int frame);
+
+/// Where the layer's sprite lies if it is rendered at the instant of `frame`. Extents grow only where the
+/// sprite is to be moved later. Computed once for each instant.
+const layers::SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer,
+                                            int frame);
+
+/// Step 6 of [LS97 6], policy Budget: chooses the resolution of every layer in view, and computes placement
+/// and cost again where it is not 1.
+void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
+                     std::vector<regulator::LayerAssessment>& assessments);
+
+/// The same without growth: as the policy `reference` draws it.
+layers::SpritePlacement placement_without_growth(const Pipeline& pipeline, const layers::LayerState& now);
+
+regulator::LayerCost cost_of(const layers::Layer& layer, layers::ivec2 size_px);
+
+/// What showing at `now` the sprite as rendered at `then` with `placement` is worth. The layer is in view.
+regulator::LayerAssessment assess_sprite(const Pipeline& pipeline, const layers::LayerState& then,
+                                         const layers::SpritePlacement& placement,
+                                         const layers::LayerState& now, int frames_since_render);
+
+/// What the regulator knows about `layer` at `frame`.
+regulator::LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int layer, int frame);
+
+}  // namespace talisman::sequences

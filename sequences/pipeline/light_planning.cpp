@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/pipeline/light_planning.h"
+
+#include "fiducials/photometric.h"
+#include "fiducials/turned_faces.h"
+#include "layers/animation.h"
+#include "layers/built_effects.h"
+#include "layers/light_change.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+void name(const layers::Scene& scene, fiducials::LightRef& light) {
+  if (light.index >= 0) light.name = scene.lights[light.index].name;
+}
+
+}  // namespace
+
+layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const layers::Layer& layer,
+                                             layers::LayerBound bound) {
+  const regulator::RegulatorOptions& options = pipeline.settings.regulator;
+  bound.follows_faces = options.turned_px > 0;
+  bound.surface.reset();
+  bound.surface_why_not = "no option follows the light";
+  if (!regulator::follows_light(options)) return bound;
+  bound.surface_why_not = "a shade layer follows where its term lies";
+  if (layer.base >= 0) return bound;
+  const layers::LightChange change = layers::light_change_of(pipeline.scene, layer, pipeline.moving_carriers);
+  bound.surface_why_not = change.why_not;
+  if (!layers::is_built(layers::Effect::ColorWarp) || !change.possible()) return bound;
+  bound.surface = layers::mean_surface(pipeline.scene, layer);
+  if (layer.factored.specular) bound.surface->specular = layers::dvec3(0.0);  // in a sprite of its own
+  return bound;
+}
+
+void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerState& then,
+                            const layers::LayerState& now, fiducials::Report& report) {
+  const layers::LayerBound& bound = pipeline.bounds[now.layer];
+  report.photometric =
+      fiducials::photometric_of(then, now, bound, {.color_warp = pipeline.settings.regulator.color_warp});
+  if (report.photometric.computed) {
+    name(pipeline.scene, report.photometric.color_light);
+    name(pipeline.scene, report.photometric.angle_light);
+  }
+  if (bound.follows_faces) report.turned = fiducials::turned_faces_of(then, now, bound.hull);
+}
+
+}  // namespace talisman::sequences

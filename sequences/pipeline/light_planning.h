@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which layers have their light and their faces followed, and what that says of an old sprite: the
+/// photometric and the facing fiducials as `step` uses them. A layer on which the light cannot change costs
+/// nothing.
+
+#include <vector>
+
+#include "sequences/pipeline/step.h"
+
+namespace talisman::sequences {
+
+/// The bound, equipped for what the options follow: with a surface if the light can change on the layer, with
+/// the frames of the bodies where turned faces are regulated. Cost: once per layer and run; reads the
+/// triangles and textures of layers on which the light can change.
+layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const layers::Layer& layer,
+                                             layers::LayerBound bound);
+
+/// Fills in Report::photometric, with the names of the lights, and Report::turned.
+void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerState& then,
+                            const layers::LayerState& now, fiducials::Report& report);
+
+}  // namespace talisman::sequences

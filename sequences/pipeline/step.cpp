@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/pipeline/step.h"
+
+#include <chrono>
+#include <map>
+
+#include "layers/animation.h"
+#include "layers/built_effects.h"
+#include "layers/check.h"
+#include "layers/effects.h"
+#include "sequences/pipeline/direct_picture.h"
+#include "sequences/pipeline/draw_instant.h"
+#include "sequences/pipeline/extended_composite.h"
+#include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/light_planning.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using layers::Layer;
+using layers::LayerState;
+using layers::SceneFrame;
+using layers::SpritePlacement;
+using regulator::Action;
+using regulator::LayerAssessment;
+
+class Stopwatch {
+ public:
+  double ms() const {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// What the policy `reference` would render for this frame: every layer in view, without growth.
+std::int64_t reference_pixels(const Pipeline& pipeline, const std::vector<LayerState>& states,
+                              const FrameOrder& order) {
+  std::int64_t pixels = 0;
+  for (const int layer : order.back_to_front)
+    pixels +=
+        cost_of(pipeline.layers.layers[layer], placement_without_growth(pipeline, states[layer]).size_px)
+            .pixels;
+  return pixels;
+}
+
+/// A layer that another one draws in this frame, or an aggregate that does not exist in it, is out of view.
+LayerAssessment assess(const Pipeline& pipeline, PipelineState& state, const Layer& layer,
+                       const FrameReport& report) {
+  if (report.order.has_own_sprite(layer.id, layer.is_aggregate()))
+    return assess_layer(pipeline, state, layer.id, report.frame);
+  LayerAssessment not_shown;
+  not_shown.layer = layer.id;
+  not_shown.preferences = layer.preferences;
+  not_shown.has_sprite = state.memory[layer.id].then.has_value();
+  return not_shown;
+}
+
+/// How far the greedy choice of this frame was from the best one, if the policy makes one.
+std::optional<regulator::BudgetGap> gap_of(const Pipeline& pipeline, const FrameReport& report) {
+  const regulator::RegulatorOptions& options = pipeline.settings.regulator;
+  if (options.policy != regulator::Policy::Budget) return std::nullopt;
+  constexpr std::size_t kMostStates = 20'000;  // some 20 ms, then the frame counts as not proved
+  return regulator::budget_gap(regulator::candidates_of(report.assessments, options),
+                               regulator::left_after_first_appearances(report.assessments, options),
+                               kMostStates);
+}
+
+/// Chooses the instant as of which the layer is drawn, and completes the decision by how that sprite is shown
+/// now. Returns the instant.
+int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
+                   regulator::LayerDecision& decision) {
+  const regulator::FrameRun run = choose_draw_instant(pipeline, state, decision.layer, frame);
+  decision.reason += "; rendered as of frame " + std::to_string(run.instant) + ", serves " +
+                     std::to_string(run.first) + "-" + std::to_string(run.last);
+  if (predicts(pipeline)) decision.reason += " if the motion goes on";
+  if (run.instant == frame) return frame;
+  const LayerAssessment shown =
+      assess_sprite(pipeline, states_at(pipeline, state, run.instant)[decision.layer],
+                    placement_at(pipeline, state, decision.layer, run.instant),
+                    states_at(pipeline, state, frame)[decision.layer], 0);
+  decision.shown_warp = shown.fitted.warp;
+  decision.shown_geometric_px = shown.fiducials.geometric.px;
+  decision.shown_color = shown.fiducials.photometric.multiplier;
+  return run.instant;
+}
+
+/// Notes every layer that is to be rendered: its state and its placement, drawn or not.
+void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameReport& report) {
+  for (regulator::LayerDecision& decision : report.plan.decisions) {
+    if (decision.action == Action::Drop) continue;
+    LayerMemory& memory = state.memory[decision.layer];
+    if (decision.action == Action::Rerender) {
+      const int instant =
+          looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
+      // The placement first: it depends on how long the old sprite lasted.
+      memory.placement = placement_at(pipeline, state, decision.layer, instant);
+      memory.then = states_at(pipeline, state, instant)[decision.layer];
+      memory.frame_rendered = report.frame;
+      memory.depicts_frame = instant;
+      memory.drawn = false;
+      memory.resolution = decision.resolution;
+      memory.predicted = predicts(pipeline);
+      memory.frames_short_of_area = 0;
+      const Layer& layer = pipeline.layers.layers[decision.layer];
+      decision.cost = cost_of(layer, memory.placement.size_px);
+      state.shade_plan.add_render(pipeline, layer, state.captured.at(instant).shadow_maps, report.shade);
+    }
+    memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
+    decision.depicts_frame = memory.depicts_frame;
+  }
+}
+
+/// The sprites of this frame, back to front, each with the map that puts it in its place.
+std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineState& state,
+                                       const FrameReport& report) {
+  std::vector<ShownSprite> shown;
+  shown.reserve(report.order.back_to_front.size());
+  for (const int layer : report.order.back_to_front) {
+    const regulator::LayerDecision& decision = report.plan.decisions[layer];
+    const LayerMemory& memory = state.memory[layer];
+    if (decision.action == Action::Drop || memory.placement.empty()) continue;
+    SpriteMultipliers multipliers =
+        multipliers_at(pipeline.layers.layers[layer], time_of(pipeline, report.frame));
+    if constexpr (layers::is_built(layers::Effect::ColorWarp))
+      multipliers.color *= layers::vec3(decision.shown_color);
+    shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
+                     memory.placement.size_px, report.frame - memory.frame_rendered, multipliers});
+  }
+  return shown;
+}
+
+/// How the run compresses its sprites, or null.
+const chunker::CompressionOptions* compression_of(const Pipeline& pipeline) {
+  const bool called = layers::is_built(layers::Effect::SpriteCompression) && pipeline.settings.compression;
+  return called ? &*pipeline.settings.compression : nullptr;
+}
+
+/// Draws the sprites that this frame shows and the store does not hold yet.
+void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
+                          const chunker::PreparedScene& prepared, FrameReport& report) {
+  std::map<std::pair<int, int>, SceneFrame> others;  // instants other than now; by when they were expected
+  for (const ShownSprite& sprite : report.shown) {
+    LayerMemory& memory = state.memory[sprite.layer];
+    if (memory.drawn) continue;
+    const int instant = memory.depicts_frame;
+    const std::pair key{memory.predicted ? memory.frame_rendered : instant, instant};
+    const bool as_of_now = key == std::pair{report.frame, report.frame};
+    if (!as_of_now && others.count(key) == 0)
+      others.emplace(key, scene_expected(pipeline, key.first, instant));
+    chunker::RenderResult result =
+        draw_layer(pipeline, state.shadow_maps, prepared, as_of_now ? now : others.at(key),
+                   pipeline.layers.layers[sprite.layer], memory.placement);
+    const bool is_late = memory.frame_rendered != report.frame;
+    if (const chunker::CompressionOptions* compression = compression_of(pipeline))
+      keep_compressed(sprite.layer, result.sprite, *compression, state.compressed, state.sprites,
+                      is_late ? nullptr : &*report.compression);
+    else
+      state.sprites.put(sprite.layer, std::move(result.sprite));
+    memory.drawn = true;
+    if (is_late) {
+      ++report.late_renders;  // its counters belong to the frame for which it was planned
+    } else {
+      report.render += result.counters;
+      report.render_by_layer[sprite.layer] = result.counters;
+    }
+  }
+}
+
+chunker::PlacedSprite placed_of(const ShownSprite& sprite, const chunker::SpriteStore& sprites) {
+  chunker::PlacedSprite placed;
+  placed.sprite = sprites.find(sprite.layer);
+  placed.screen_from_sprite = sprite.screen_from_sprite;
+  placed.alpha_multiplier = sprite.multipliers.alpha;
+  placed.color_multiplier = sprite.multipliers.color;
+  return placed;
+}
+
+chunker::CompositeResult composite_shown(const Pipeline& pipeline, const FrameReport& report,
+                                         const chunker::SpriteStore& sprites) {
+  const layers::ivec2 display_px = pipeline.settings.view.display_px;
+  if (!report.order.resolved.empty()) {
+    std::vector<LayerSprite> placed;
+    for (const ShownSprite& sprite : report.shown)
+      placed.push_back({sprite.layer, placed_of(sprite, sprites)});
+    return composite_extended(placed, report.order, display_px, pipeline.scene.background);
+  }
+  std::vector<chunker::PlacedSprite> placed;
+  placed.reserve(report.shown.size());
+  for (const ShownSprite& sprite : report.shown) placed.push_back(placed_of(sprite, sprites));
+  return chunker::composite(placed, display_px, pipeline.scene.background);
+}
+
+chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& report,
+                                   const CompressedSprites& compressed) {
+  std::vector<chunker::PlacedCompressed> placed;
+  for (const ShownSprite& sprite : report.shown)
+    placed.push_back({&compressed.at(sprite.layer), sprite.screen_from_sprite});
+  return model_chunk_reads(placed, pipeline.settings.view.display_px);
+}
+
+void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
+          const chunker::PreparedScene& prepared, FrameReport& report) {
+  chunker::CompositeResult result;
+  const Stopwatch render_watch;
+  if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
+    DirectPicture picture = draw_directly(authored, state.shadow_maps, prepared, now, report.frame);
+    result = std::move(picture.composite);
+    report.render += picture.render;
+    report.times.render_ms = render_watch.ms();
+  } else {
+    if (compression_of(pipeline)) report.compression.emplace();
+    draw_missing_sprites(pipeline, state, now, prepared, report);
+    report.times.render_ms = render_watch.ms();
+    const Stopwatch composite_watch;
+    result = composite_shown(pipeline, report, state.sprites);
+    report.times.composite_ms = composite_watch.ms();
+    if (compression_of(pipeline)) report.compression->cache = chunks_read(pipeline, report, state.compressed);
+  }
+  report.picture = std::move(result.frame);
+  report.composite = result.counters;
+  report.sprite_bytes = state.sprites.bytes();
+}
+
+}  // namespace
+
+Pipeline::Pipeline(const layers::Scene& scene_in, const layers::LayerSet& layers_in,
+                   const Settings& settings_in)
+    : scene(scene_in), layers(layers_in), settings(settings_in) {
+  if (regulator::follows_light(settings.regulator)) moving_carriers = layers::moving_carriers(scene);
+  for (const Layer& layer : layers.layers)
+    bounds.put(layer.id, following_light_and_faces(*this, layer,
+                                                   layers::make_layer_bound(scene, layer, settings.bound)));
+  sorts_visibility = layers::calls_for_visibility_sort(layers.layers);
+}
+
+Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in, BoundTable bounds_in)
+    : scene(authored.scene),
+      layers(layers_in),
+      settings(authored.settings),
+      bounds(std::move(bounds_in)),
+      moving_carriers(authored.moving_carriers),
+      sorts_visibility(authored.sorts_visibility) {}
+
+FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
+                 const chunker::PreparedScene* prepared) {
+  TALISMAN_CHECK_EQ(state.memory.size(), with_aggregates(authored, state).layers.layers.size());
+  FrameReport report;
+  report.frame = frame;
+
+  // Decide: no pixel is touched up to and including the plan.
+  const Stopwatch plan_watch;
+  begin_frame(authored, state, frame);
+  report.order = order_layers(authored, state, frame);  // may merge layers into aggregates
+  const Pipeline& pipeline = with_aggregates(authored, state);
+  report.render_by_layer.resize(pipeline.layers.layers.size());
+  report.assessments.reserve(pipeline.layers.layers.size());
+  for (const Layer& layer : pipeline.layers.layers) {
+    report.assessments.push_back(assess(pipeline, state, layer, report));
+    report.layers_assessed += report.assessments.back().in_view && report.assessments.back().has_sprite;
+  }
+  if (pipeline.settings.regulator.policy == regulator::Policy::Budget)
+    fit_resolutions(pipeline, state, frame, report.assessments);
+  report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
+  double bookkeeping_ms = plan_watch.ms();
+  report.pixels_reference = reference_pixels(pipeline, states_at(pipeline, state, frame), report.order);
+  if (pipeline.settings.budget_gap) report.budget_gap = gap_of(pipeline, report);
+  bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
+  remember_renders(pipeline, state, report);
+  explain_order(pipeline, report);
+  report.shown = sprites_shown(pipeline, state, report);
+  report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
+
+  // Execute.
+  if (prepared)
+    draw(authored, pipeline, state, pipeline.scene.at(time_of(pipeline, frame)), *prepared, report);
+  return report;
+}
+
+chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
+  ShadowMapStore maps;
+  return draw_directly(pipeline, maps, prepared, pipeline.scene.at(time_of(pipeline, frame)), frame)
+      .composite.frame;
+}
+
+chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
+  Pipeline reference = pipeline;
+  reference.settings.regulator.policy = regulator::Policy::Reference;
+  PipelineState fresh(reference);
+  return step(reference, fresh, frame, &prepared).picture;
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/results/separate_pictures.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "sequences/files/image_io.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using layers::LayerKind;
+
+chunker::PlacedSprite placed(const PipelineState& state, const ShownSprite& shown) {
+  chunker::PlacedSprite p;
+  p.sprite = state.sprites.find(shown.layer);
+  p.screen_from_sprite = shown.screen_from_sprite;
+  p.alpha_multiplier = shown.multipliers.alpha;
+  p.color_multiplier = shown.multipliers.color;
+  return p;
+}
+
+/// What makes one kind of sprite visible by itself.
+layers::vec3 behind(const Pipeline& pipeline, LayerKind kind) {
+  switch (kind) {
+    case LayerKind::Geometry:
+      return pipeline.scene.background;
+    case LayerKind::Shadow:
+      return {1, 1, 1};
+    default:
+      return {0, 0, 0};
+  }
+}
+
+std::string file_name(int frame, std::string layer) {
+  std::replace(layer.begin(), layer.end(), '/', '-');
+  char number[16];
+  std::snprintf(number, sizeof number, "%04d", frame);
+  return std::string(number) + "-" + layer + ".png";
+}
+
+void write(const Pipeline& pipeline, const std::vector<chunker::PlacedSprite>& sprites,
+           const layers::vec3& background, const std::string& path) {
+  const auto result = chunker::composite(sprites, pipeline.settings.view.display_px, background);
+  write_png(path, to_image8(result.frame));
+}
+
+}  // namespace
+
+void write_separate(const Pipeline& pipeline, const PipelineState& state, const FrameReport& report,
+                    const std::string& folder) {
+  const auto& all = pipeline.layers.layers;
+  const auto base_of = [&](const ShownSprite& s) {
+    return all[s.layer].base < 0 ? s.layer : all[s.layer].base;
+  };
+  for (std::size_t i = 0; i < report.shown.size();) {  // a base and its shades follow each other
+    const int base = base_of(report.shown[i]);
+    std::vector<chunker::PlacedSprite> sum;
+    const std::size_t first = i;
+    for (; i < report.shown.size() && base_of(report.shown[i]) == base; ++i)
+      sum.push_back(placed(state, report.shown[i]));
+    if (sum.size() < 2) continue;
+    for (std::size_t k = first; k < i; ++k) {
+      const layers::Layer& layer = all[report.shown[k].layer];
+      write(pipeline, {sum[k - first]}, behind(pipeline, layer.kind),
+            folder + "/" + file_name(report.frame, layer.name));
+    }
+    write(pipeline, sum, pipeline.scene.background,
+          folder + "/" + file_name(report.frame, all[base].name + "-sum"));
+  }
+}
+
+}  // namespace talisman::sequences

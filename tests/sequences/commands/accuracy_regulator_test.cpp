@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+// `accuracy --regulator` from the command to its files.
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "sequences/commands/accuracy.h"
+#include "tests/sequences/csv_rows.h"
+#include "tests/sequences/temporary_folder.h"
+#include "tests/support/sequences.h"
+
+namespace talisman::sequences {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using tests::content;
+using tests::rows_of;
+using tests::without_times;
+
+RegulatorCommandOptions quick() {
+  RegulatorCommandOptions options;
+  options.frames = "0-17";
+  options.size = "64x48";
+  options.quality_every = 6;
+  options.progress = "none";
+  return options;
+}
+
+const Sequence& moving() {
+  static const Sequence sequence = tests::moving_sequence(48);
+  return sequence;
+}
+
+class RegulatorReportFiles : public testing::Test {
+ protected:
+  static const RegulatorReport& report() {
+    static const RegulatorReport measured = measure_regulator_report(moving(), quick());
+    return measured;
+  }
+  tests::TemporaryFolder folder_;
+};
+
+TEST_F(RegulatorReportFiles, AllAreThere) {
+  write_report(report(), folder_.path());
+  for (const char* name :
+       {"regulator.csv", "regulator.json", "regulator.svg", "regulator-polygons.svg", "regulator-bound.svg",
+        "regulator-popping.svg", "lookahead.csv", "lookahead.svg", "calibration.csv",
+        "calibration-geometric.svg", "calibration-magnification.svg", "calibration-visibility.svg"})
+    EXPECT_GT(content(folder_.path() + "/" + name).size(), 100u) << name;
+}
+
+TEST_F(RegulatorReportFiles, CsvHasOneFullLinePerSettingWithFiniteNumbers) {
+  const auto rows = rows_of(settings_csv(report()));
+  ASSERT_EQ(rows.size(), 1 + report().settings.size());
+  EXPECT_EQ(rows[0][0], "policy");
+  for (std::size_t k = 1; k < rows.size(); ++k) {
+    ASSERT_EQ(rows[k].size(), rows[0].size());
+    for (std::size_t c = 3; c < rows[k].size(); ++c) {
+      if (k == 1 && rows[0][c] == "psnr_db") {
+        EXPECT_EQ(rows[k][c], "") << "the reference equals itself";
+        continue;
+      }
+      EXPECT_TRUE(!rows[k][c].empty() && std::isfinite(std::stod(rows[k][c]))) << rows[0][c] << " line " << k;
+    }
+  }
+}
+
+TEST_F(RegulatorReportFiles, SamplesNameTheirLayerAndQuoteIt) {
+  RegulatorReport odd = report();
+  ASSERT_FALSE(odd.samples.empty());
+  odd.samples.resize(1);
+  odd.layers[odd.samples[0].layer] = "wing \"left\"";
+  EXPECT_THAT(samples_csv(odd), HasSubstr(",\"wing \"\"left\"\"\","));
+  EXPECT_THAT(samples_csv(odd), HasSubstr("geometric_px,magnification_percent"));
+}
+
+TEST_F(RegulatorReportFiles, JsonSaysWhatWasMeasured) {
+  const nlohmann::json json = nlohmann::json::parse(json_of(report()));
+  EXPECT_EQ(json["schema"], "talisman.regulator/1");
+  EXPECT_EQ(json["display_px"], (nlohmann::json{64, 48}));
+  EXPECT_EQ(json["quality_every"], 6);
+  EXPECT_EQ(json["settings"].size(), report().settings.size());
+  EXPECT_TRUE(json["settings"][0]["psnr_db"].is_null());
+  EXPECT_EQ(json["lookahead"]["points"].size(), 2 * compared_lookaheads().size()) << "known and predicted";
+  EXPECT_EQ(json["calibration"].size(), calibrated_fiducials().size());
+}
+
+TEST_F(RegulatorReportFiles, AllButTheTimesIsTheSameInEveryRun) {
+  const RegulatorReport again = measure_regulator_report(moving(), quick());
+  EXPECT_EQ(without_times(settings_csv(again)), without_times(settings_csv(report())));
+  EXPECT_EQ(samples_csv(again), samples_csv(report()));
+}
+
+TEST_F(RegulatorReportFiles, OneFrameIsEnough) {
+  RegulatorCommandOptions options = quick();
+  options.frames = "0";
+  const RegulatorReport single = measure_regulator_report(moving(), options);
+  EXPECT_TRUE(single.samples.empty()) << "there is no older sprite";
+  write_report(single, folder_.path());
+  EXPECT_THAT(content(folder_.path() + "/calibration-geometric.svg"), HasSubstr("no data"));
+  std::ostringstream out;
+  print_report(single, out);
+  EXPECT_THAT(out.str(), HasSubstr("frames 0-0 planned"));
+}
+
+TEST_F(RegulatorReportFiles, TheTableSaysWhatWasUsed) {
+  std::ostringstream out;
+  print_report(report(), out);
+  for (const char* text : {"frames 0-17 planned, 3 of them drawn", "64x48 px", "lookahead 16", "oracle"})
+    EXPECT_THAT(out.str(), HasSubstr(text));
+  EXPECT_EQ(out.str().find("nan"), std::string::npos);
+}
+
+TEST(MeasureRegulatorReport, DefaultsFitTheDisplayAndTheNumberOfFrames) {
+  Sequence large = tests::moving_sequence(3);
+  large.display_px = {1024, 256};
+  RegulatorCommandOptions options;
+  options.progress = "none";
+  const RegulatorReport report = measure_regulator_report(large, options);
+  EXPECT_EQ(report.display_px, layers::ivec2(512, 128));
+  EXPECT_EQ(report.lookahead.display_px, layers::ivec2(1024, 256)) << "plans are made at full size";
+  EXPECT_EQ(report.frames.first, 0);
+  EXPECT_EQ(report.frames.last, 2);
+  EXPECT_EQ(report.frames.every, 1);
+}
+
+TEST(MeasureRegulatorReport, BadOptionsAreNamed) {
+  const auto complaint = [](auto change) {
+    RegulatorCommandOptions options = quick();
+    change(options);
+    return tests::message_of([&] { measure_regulator_report(moving(), options); });
+  };
+  EXPECT_THAT(complaint([](auto& o) { o.frames = "3-99"; }), HasSubstr("--frames is '3-99'"));
+  EXPECT_THAT(complaint([](auto& o) { o.size = "64"; }), HasSubstr("--size is '64'"));
+  EXPECT_THAT(complaint([](auto& o) { o.quality_every = -1; }), HasSubstr("--quality-every is -1"));
+  EXPECT_THAT(complaint([](auto& o) { o.progress = "loud"; }), HasSubstr("--progress"));
+}
+
+TEST(RunAccuracy, ExactlyOneExperimentMustBeAskedFor) {
+  std::ostringstream out;
+  AccuracyOptions none, both, others;
+  both.solvers = true;
+  both.regulator.sequence = "canyon";
+  others.regulator.sequence = others.renderer = "canyon";
+  EXPECT_THAT(tests::message_of([&] { run_accuracy(none, out); }), HasSubstr("nothing to measure"));
+  EXPECT_THAT(tests::message_of([&] { run_accuracy(both, out); }), HasSubstr("more than one experiment"));
+  EXPECT_THAT(tests::message_of([&] { run_accuracy(others, out); }), HasSubstr("more than one experiment"));
+}
+
+}  // namespace
+}  // namespace talisman::sequences

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/experiments/regulator/experiment.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sequences/pictures/diff.h"
+#include "sequences/experiments/regulator/lookahead_curve.h"
+#include "sequences/experiments/regulator/report.h"
+#include "tests/support/sequences.h"
+
+namespace talisman::sequences {
+namespace {
+
+using regulator::Policy;
+
+constexpr int kFrames = 24;
+
+const Sequence& moving() {
+  static const Sequence sequence = tests::moving_sequence(kFrames);
+  return sequence;
+}
+
+Settings settings_for(const Sequence& sequence) {
+  Settings settings;
+  settings.view.display_px = sequence.display_px;
+  settings.fps = sequence.fps;
+  settings.frames = sequence.frames;
+  return settings;
+}
+
+std::vector<SettingResult> measure(const std::vector<RegulatorSetting>& compared,
+                                   const ExperimentFrames& frames) {
+  return measure_regulator(moving(), settings_for(moving()), compared, frames, ProgressKind::None);
+}
+
+/// Every setting on every frame, measured once for all tests.
+const std::vector<SettingResult>& everything() {
+  static const std::vector<SettingResult> results = [] {
+    const ExperimentFrames all{0, kFrames - 1, 1};
+    const double polygons = reference_polygons_per_frame(moving(), settings_for(moving()), all);
+    return measure(regulator_settings({}, polygons), all);
+  }();
+  return results;
+}
+
+std::map<double, SettingResult> by_knob(const std::string& series) {
+  std::map<double, SettingResult> results;
+  for (const SettingResult& result : everything())
+    if (result.setting.series == series) results.emplace(result.setting.value, result);
+  return results;
+}
+
+// --- Which frames
+
+TEST(SampledFrames, OnePerStratumAndAllOfThemWhenEveryIsOne) {
+  for (const int every : {1, 2, 7, 12}) {
+    const std::vector<int> frames = sampled_frames({10, 109, every});
+    ASSERT_EQ(frames.size(), std::size_t(99 / every + 1)) << every;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      EXPECT_EQ((frames[k] - 10) / every, int(k));
+      EXPECT_LE(frames[k], 109);
+    }
+  }
+}
+
+TEST(SampledFrames, MeetEveryPhaseOfEveryHoldAboutEquallyOften) {
+  // With a regular stride of 5, hold 5 would be seen at its renders only, and would look perfect. Twenty
+  // frames are what the tool draws by default.
+  for (const int every : {1, 2, 3, 4, 5, 6, 8, 10, 12, 13, 16})
+    for (const int hold : compared_holds()) {
+      std::vector<int> hits(hold, 0);
+      for (const int frame : sampled_frames({0, 20 * every - 1, every})) ++hits[frame % hold];
+      const auto [least, most] = std::minmax_element(hits.begin(), hits.end());
+      EXPECT_GE(*least, std::max(1, 20 / hold - 2)) << "every " << every << ", hold " << hold;
+      EXPECT_LE(*most, 20 / hold + 2) << "every " << every << ", hold " << hold;
+    }
+}
+
+TEST(SampledFrames, HaveAPredecessorWhereTheyCan) {
+  EXPECT_THAT(sampled_frames({0, 1, 2}), testing::ElementsAre(1));
+  EXPECT_THAT(sampled_frames({0, 0, 2}), testing::ElementsAre(0));
+}
+
+TEST(SampledFrames, OneFrameIsEnough) { EXPECT_THAT(sampled_frames({5, 5, 9}), testing::ElementsAre(5)); }
+
+// --- Which settings
+
+TEST(RegulatorSettings, AreValidDistinctAndBeginWithTheReference) {
+  regulator::RegulatorOptions base;
+  base.budget_pixels = 5;  // of a sequence whose own policy is budget; must not limit the others
+  const std::vector<RegulatorSetting> settings = regulator_settings(base, 1000);
+  EXPECT_EQ(settings.front().options.policy, Policy::Reference);
+  std::set<std::string> names;
+  for (const RegulatorSetting& setting : settings) {
+    EXPECT_EQ(regulator::first_defect(setting.options), "");
+    EXPECT_EQ(setting.options.budget_pixels, regulator::kNoLimit);
+    names.insert(setting.series + " " + setting.knob());
+  }
+  EXPECT_EQ(names.size(), settings.size());
+  EXPECT_EQ(settings.size(), 1u + 4 + 4 + 6 + 6 + 6 + 5);
+}
+
+TEST(RegulatorSettings, BudgetsAreSharesOfTheReference) {
+  for (const RegulatorSetting& setting : regulator_settings({}, 1000)) {
+    if (setting.options.policy != Policy::Budget) {
+      EXPECT_EQ(setting.options.budget_polygons, regulator::kNoLimit);
+      continue;
+    }
+    EXPECT_EQ(setting.options.budget_polygons, std::llround(10 * setting.value));
+  }
+}
+
+// --- What is measured
+
+TEST(MeasureRegulator, TheReferenceIsItsOwnTruth) {
+  const SettingResult& reference = everything().front();
+  EXPECT_EQ(reference.mean_update_rate, 1);
+  EXPECT_EQ(reference.max_geometric_px, 0);
+  EXPECT_EQ(reference.quality.psnr_db, HUGE_VAL);
+  EXPECT_EQ(reference.quality.flip, 0);
+  EXPECT_EQ(reference.popping.rms, 0);
+  EXPECT_EQ(reference.popping.elsewhere_rms, 0);
+  EXPECT_EQ(reference.popping.frames, kFrames - 1);
+  EXPECT_GT(reference.popping.stepping_share, 0.3) << "it draws everything again, and nothing jumps";
+}
+
+TEST(MeasureRegulator, AllOthersLoseSomethingAndEveryNumberIsFinite) {
+  for (const SettingResult& r : everything()) {
+    SCOPED_TRACE(r.setting.series + " " + r.setting.knob());
+    if (r.setting.series == "reference") continue;
+    EXPECT_LT(r.renders, everything().front().renders);
+    for (const double value : {r.quality.psnr_db, r.quality.ssim, r.quality.flip, r.mean_geometric_px,
+                               r.max_geometric_px, r.popping.rms, r.modelled_ms, r.frame_ms()})
+      EXPECT_TRUE(std::isfinite(value));
+    EXPECT_GT(r.quality.flip, 0);
+    EXPECT_GT(r.popping.rms, 0);
+    EXPECT_LE(r.popping.rms, 255);
+    EXPECT_GT(r.frame_ms(), 0);
+  }
+}
+
+TEST(MeasureRegulator, ALooserThresholdDrawsLessAndKeepsItsBound) {
+  std::int64_t polygons = everything().front().polygons;
+  for (const auto& [px, result] : by_knob("threshold")) {
+    EXPECT_LE(result.polygons, polygons) << px;
+    EXPECT_LE(result.max_geometric_px, px);
+    polygons = result.polygons;
+  }
+}
+
+TEST(MeasureRegulator, TheOracleIsTheFloorOfItsBound) {
+  const auto oracle = by_knob("oracle");
+  for (const std::string series : {"threshold", "lookahead 16"})
+    for (const auto& [px, result] : by_knob(series)) {
+      EXPECT_LE(oracle.at(px).renders, result.renders) << series << " " << px;
+      EXPECT_LE(oracle.at(px).max_geometric_px, px);
+    }
+}
+
+TEST(MeasureRegulator, ALongerHoldPopsHarder) {
+  // The step at the end of a hold is the motion of its frames; from 5 frames on it exceeds the squares of the
+  // ground's texture, and grows no more.
+  const auto hold = by_knob("hold");
+  EXPECT_GT(hold.at(3).popping.rms, hold.at(2).popping.rms);
+  EXPECT_GT(hold.at(5).popping.rms, hold.at(3).popping.rms);
+}
+
+/// One policy by itself, frame by frame, every truth drawn anew: what measure_regulator must find.
+struct SlowRun {
+  std::vector<FrameDiff> quality;
+  double popping_squares = 0, popping_samples = 0;
+};
+
+SlowRun slow_run(const regulator::RegulatorOptions& options, const std::set<int>& frames) {
+  Settings settings = settings_for(moving());
+  settings.regulator = options;
+  const Pipeline pipeline(*moving().scene, moving().layers, settings);
+  const chunker::PreparedScene prepared(*moving().scene);
+  PipelineState state(pipeline);
+  SlowRun run;
+  FrameReport before;
+  for (int frame = 0; frame < kFrames; ++frame) {
+    FrameReport now = step(pipeline, state, frame, &prepared);
+    if (frames.count(frame)) {
+      const Image8 shown = to_image8(now.picture),
+                   truth = to_image8(draw_reference(pipeline, frame, prepared));
+      run.quality.push_back({"", compare(shown, truth)});
+      if (frame > 0) {
+        const Image8 shown_before = to_image8(before.picture),
+                     truth_before = to_image8(draw_reference(pipeline, frame - 1, prepared));
+        std::vector<int> layers_before;
+        for (const ShownSprite& sprite : before.shown) layers_before.push_back(sprite.layer);
+        const PixelMask mask = stepping_pixels(layers_before, now, state.sprites, settings.view.display_px);
+        for (std::size_t i = 0; i < shown.rgb.size(); ++i) {
+          if (!mask[i / 3]) continue;
+          const double d = (shown.rgb[i] - truth.rgb[i]) - (shown_before.rgb[i] - truth_before.rgb[i]);
+          run.popping_squares += d * d;
+          run.popping_samples += 1;
+        }
+      }
+    }
+    before = std::move(now);
+  }
+  return run;
+}
+
+TEST(MeasureRegulator, SamplingFramesChangesNoPictureAndNoPlan) {
+  // Frames between samples are planned only; their sprites are drawn late. Each setting must come out as if
+  // it had been run alone with every frame drawn.
+  std::vector<RegulatorSetting> compared{everything().front().setting};
+  for (const char* series : {"hold", "threshold", "lookahead 16", "oracle", "budget"})
+    compared.push_back(std::next(by_knob(series).begin())->second.setting);
+  for (const ExperimentFrames& frames : {ExperimentFrames{0, kFrames - 1, 5}, ExperimentFrames{7, 18, 3}}) {
+    const std::vector<int> sampled = sampled_frames(frames);
+    const std::vector<SettingResult> results = measure(compared, frames);
+    for (std::size_t k = 1; k < results.size(); ++k) {
+      SCOPED_TRACE(compared[k].series);
+      const SlowRun slow = slow_run(compared[k].options, {sampled.begin(), sampled.end()});
+      const Quality quality = summarize(slow.quality).mean;
+      EXPECT_EQ(results[k].quality.flip, quality.flip);
+      EXPECT_EQ(results[k].quality.psnr_db, quality.psnr_db);
+      if (slow.popping_samples > 0) {
+        EXPECT_NEAR(results[k].popping.rms, std::sqrt(slow.popping_squares / slow.popping_samples), 1e-9);
+      }
+      if (frames.first > 0) continue;
+      for (const SettingResult& full : everything()) {
+        if (full.setting.options == compared[k].options) {
+          EXPECT_EQ(results[k].polygons, full.polygons);
+        }
+      }
+    }
+  }
+}
+
+TEST(ReferencePolygonsPerFrame, AreThoseOfTheLayersInView) {
+  // All three layers of the scene are in view in every frame.
+  double polygons = 0;
+  for (const layers::Layer& layer : moving().layers.layers) polygons += layer.polygons;
+  EXPECT_DOUBLE_EQ(reference_polygons_per_frame(moving(), settings_for(moving()), {3, 9, 2}), polygons);
+}
+
+// --- Lookahead
+
+TEST(LookaheadCurve, LiesBetweenThresholdAndOracle) {
+  Settings settings = settings_for(moving());
+  settings.regulator.geometric_px = 1;
+  const LookaheadCurve curve = lookahead_curve(moving(), settings, {0, kFrames - 1, 1});
+  const std::size_t lookaheads = compared_lookaheads().size();
+  ASSERT_EQ(curve.points.size(), 2 * lookaheads) << "known and predicted";
+  EXPECT_EQ(curve.points.front().frames, 0);
+  EXPECT_EQ(curve.points.front().renders, curve.threshold_renders) << "N = 0 is the policy threshold";
+  EXPECT_LT(curve.oracle_renders, curve.threshold_renders);
+  for (const LookaheadPoint& point : curve.points) {
+    EXPECT_GE(point.renders, curve.oracle_renders) << point.frames;
+    EXPECT_LE(point.max_geometric_px, 1) << point.frames;
+  }
+  EXPECT_EQ(curve.points[lookaheads - 1].renders, curve.oracle_renders)
+      << "64 frames are more than the sequence has";
+}
+
+// --- Pareto
+
+TEST(ParetoFront, WhatIsBeatenIsNotOnIt) {
+  using testing::ElementsAre;
+  EXPECT_THAT(pareto_front({1, 2, 3, 4}, {9, 5, 6, 1}), ElementsAre(true, true, false, true));
+  EXPECT_THAT(pareto_front({4, 3, 2, 1}, {1, 6, 5, 9}), ElementsAre(true, false, true, true));
+}
+
+TEST(ParetoFront, TiesAndNotANumber) {
+  using testing::ElementsAre;
+  EXPECT_THAT(pareto_front({1, 1, 1}, {2, 1, 1}), ElementsAre(false, true, false));
+  EXPECT_THAT(pareto_front({1, 2}, {3, 3}), ElementsAre(true, false));
+  EXPECT_THAT(pareto_front({NAN, 1, 2}, {0, NAN, 5}), ElementsAre(false, false, true));
+  EXPECT_TRUE(pareto_front({}, {}).empty());
+}
+
+}  // namespace
+}  // namespace talisman::sequences

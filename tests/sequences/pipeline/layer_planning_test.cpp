@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the decision side computes of one layer, apart from a run.
+#include "sequences/pipeline/layer_planning.h"
+
+#include <gtest/gtest.h>
+
+#include "regulator/policies.h"
+#include "sequences/pipeline/draw_instant.h"
+#include "tests/support/scenes.h"
+
+namespace talisman::sequences {
+namespace {
+
+/// moving_scene, ready to plan.
+struct Planning {
+  layers::Scene scene = tests::moving_scene();
+  layers::LayerSet layers = layers::factor(scene, tests::one_layer_per_part(scene));
+  Settings settings;
+  Planning() {
+    settings.view.display_px = {200, 150};
+    settings.frames = 48;
+  }
+};
+
+constexpr int kCube = 1;
+
+TEST(AssessSprite, EmptySpriteIsNeverGoodEnoughForWhatIsInViewNow) {
+  // Its points match well, so without the rule the optimiser would show nothing at no error.
+  const Planning p;
+  const Pipeline pipeline(p.scene, p.layers, p.settings);
+  PipelineState state(pipeline);
+  const layers::LayerState& then = states_at(pipeline, state, 3)[kCube];
+  const layers::LayerState& now = states_at(pipeline, state, 4)[kCube];
+  regulator::RegulatorOptions lenient;
+  lenient.geometric_px = 1e6;
+  const auto violation = [&](const layers::SpritePlacement& placement, const layers::LayerState& shown) {
+    return regulator::violation_of(assess_sprite(pipeline, then, placement, shown, 1), lenient);
+  };
+  EXPECT_EQ(violation(placement_at(pipeline, state, kCube, 3), now), "");
+  EXPECT_EQ(violation({}, now), "matched points 0 < 3");
+  EXPECT_EQ(violation({}, then), "") << "what would be drawn identically, empty or not, is spared";
+}
+
+TEST(StatesAt, AreCapturedOnceAndForgottenWhenTheirFrameIsPast) {
+  Planning p;
+  p.settings.regulator.policy = regulator::Policy::Lookahead;  // keeps what is ahead
+  const Pipeline pipeline(p.scene, p.layers, p.settings);
+  PipelineState state(pipeline);
+  begin_frame(pipeline, state, 2);
+  const layers::LayerState* first = states_at(pipeline, state, 7).data();
+  states_at(pipeline, state, 2);
+  EXPECT_EQ(states_at(pipeline, state, 7).data(), first);
+  begin_frame(pipeline, state, 7);
+  EXPECT_EQ(state.captured.size(), 1u);
+  EXPECT_EQ(states_at(pipeline, state, 7).data(), first);
+}
+
+TEST(StatesAt, ARunKeepsFewFramesInMemoryUnlessItLooksAhead) {
+  Planning p;
+  for (const auto policy : {regulator::Policy::Threshold, regulator::Policy::Budget}) {
+    p.settings.regulator.policy = policy;
+    const Pipeline pipeline(p.scene, p.layers, p.settings);
+    PipelineState state(pipeline);
+    for (int frame = 0; frame < 20; ++frame) {
+      step(pipeline, state, frame, nullptr);
+      EXPECT_LE(state.captured.size(), 2u) << frame;
+    }
+  }
+}
+
+TEST(PlacementAt, IsTheSameWhenAskedAgain) {
+  const Planning p;
+  const Pipeline pipeline(p.scene, p.layers, p.settings);
+  PipelineState once(pipeline), again(pipeline);
+  const layers::SpritePlacement before = placement_at(pipeline, once, kCube, 5);
+  placement_at(pipeline, again, kCube, 9);
+  EXPECT_EQ(placement_at(pipeline, again, kCube, 5), before);
+  EXPECT_EQ(placement_at(pipeline, once, kCube, 5), before);
+  EXPECT_FALSE(before.empty());
+}
+
+TEST(ChooseDrawInstant, LiesInTheWindowAndTheOracleIsNeverShorter) {
+  Planning p;
+  p.settings.regulator.geometric_px = 1;
+  for (int frame = 0; frame < 40; frame += 3) {
+    int before = 0;
+    for (const int lookahead : {0, 2, 8, 32}) {
+      p.settings.regulator.policy = regulator::Policy::Lookahead;
+      p.settings.regulator.lookahead_frames = lookahead;
+      const Pipeline pipeline(p.scene, p.layers, p.settings);
+      PipelineState state(pipeline);
+      const regulator::FrameRun run = choose_draw_instant(pipeline, state, kCube, frame);
+      EXPECT_EQ(run.first, frame);
+      EXPECT_GE(run.instant, frame);
+      EXPECT_LE(run.instant, std::min(frame + lookahead, 47));
+      EXPECT_GE(run.frames(), before) << "more instants to choose from";
+      before = run.frames();
+    }
+    p.settings.regulator.policy = regulator::Policy::Oracle;
+    const Pipeline pipeline(p.scene, p.layers, p.settings);
+    PipelineState state(pipeline);
+    EXPECT_GE(choose_draw_instant(pipeline, state, kCube, frame).frames(), before);
+  }
+}
+
+}  // namespace
+}  // namespace talisman::sequences

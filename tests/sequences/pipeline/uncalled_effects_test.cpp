@@ -1,0 +1,265 @@
+// SPDX-License-Identifier: Apache-2.0
+// An effect that is not called for leaves nothing in a run: no pass, no counter, no memory. The sequence
+// calls for all effects; each is taken away in turn, and whatever number belongs to it must be exactly zero.
+// With the effect the same numbers must not be, or the test would prove nothing.
+#include <functional>
+#include <map>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sequences/results/frame_lines.h"
+#include "tests/support/sequences.h"
+
+namespace talisman::sequences {
+namespace {
+
+using layers::Effect;
+using layers::LayerKind;
+
+constexpr int kFrames = 8;
+
+/// A whole run, kept open: its memory can be looked at.
+struct WholeRun {
+  explicit WholeRun(Variant given)
+      : variant(std::move(given)),
+        pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings),
+        prepared(*variant.sequence.scene, variant.settings.render),
+        state(pipeline),
+        summary(start_summary(pipeline, "all")) {
+    for (int frame = 0; frame < kFrames; ++frame) {
+      reports.push_back(step(pipeline, state, frame, &prepared));
+      const Pipeline& grown = with_aggregates(pipeline, state);
+      add_decisions(summary, grown, reports.back(), state);
+      summary.frames.push_back(line_of(grown, reports.back()));
+    }
+  }
+
+  Variant variant;
+  Pipeline pipeline;
+  chunker::PreparedScene prepared;
+  PipelineState state;
+  Summary summary;
+  std::vector<FrameReport> reports;
+};
+
+using Numbers = std::map<std::string, double>;
+
+double sum_over(const WholeRun& run, const std::function<double(const FrameReport&)>& number) {
+  double sum = 0;
+  for (const FrameReport& report : run.reports) sum += number(report);
+  return sum;
+}
+
+/// Over the states as of which the sprites were drawn.
+double sum_over_states(const WholeRun& run, const std::function<double(const layers::LayerState&)>& number) {
+  double sum = 0;
+  for (const LayerMemory& memory : run.state.memory)
+    if (memory.then) sum += number(*memory.then);
+  return sum;
+}
+
+double traces_of(const WholeRun& run, layers::ShadeTrace::Kind kind) {
+  return sum_over_states(run, [kind](const layers::LayerState& state) {
+    double count = 0;
+    for (const layers::ShadeTrace& trace : state.traces) count += trace.kind == kind;
+    return count;
+  });
+}
+
+/// Layers of a kind, how often they were drawn, and their shares of the sprite store.
+Numbers of_shade_layers(const WholeRun& run, LayerKind kind) {
+  Numbers n;
+  double &layers = n["layers"], &renders = n["renders"], &sprites = n["sprites"];
+  for (const layers::Layer& layer : run.pipeline.layers.layers) {
+    if (layer.kind != kind) continue;
+    ++layers;
+    renders += run.summary.layers[layer.id].renders;
+    sprites += run.state.sprites.find(layer.id) != nullptr;
+  }
+  return n;
+}
+
+double pyramid_bytes_of_finest_levels(const WholeRun& run) {
+  double bytes = 0;
+  for (const layers::Texture& texture : run.variant.sequence.scene->textures)
+    bytes += 16.0 * texture.width * texture.height;  // four floats a texel
+  return bytes;
+}
+
+Numbers of_textures(const WholeRun& run) {
+  return {{"texture bytes", double(run.prepared.texture_bytes())},
+          {"texture samples", sum_over(run, [](auto& r) { return r.render.texture_samples; })},
+          {"texture samples in lines", double(run.summary.total(&FrameLine::texture_samples))}};
+}
+
+Numbers of_compression(const WholeRun& run) {
+  const auto number = [&](auto member) {
+    return sum_over(run, [=](auto& r) { return r.compression ? double((*r.compression).*member) : 0; });
+  };
+  return {{"reports", sum_over(run, [](auto& r) { return r.compression.has_value(); })},
+          {"sprites", number(&CompressionReport::sprites)},
+          {"compressed bytes", number(&CompressionReport::compressed_bytes)},
+          {"chunks", number(&CompressionReport::chunks)},
+          {"sprites kept", double(run.state.compressed.size())},
+          {"chunks read", sum_over(run, [](auto& r) {
+             return r.compression ? double(r.compression->cache.hits + r.compression->cache.misses) : 0;
+           })}};
+}
+
+Numbers of_visibility_sort(const WholeRun& run) {
+  const auto number = [&](int layers::VisibilityCounters::*member) {
+    return sum_over(run, [=](auto& r) { return r.order.counters.*member; });
+  };
+  return {{"frames sorted", sum_over(run, [](auto& r) { return r.order.sorted; })},
+          {"layers", number(&layers::VisibilityCounters::layers)},
+          {"queries", number(&layers::VisibilityCounters::queries)},
+          {"exact tests", number(&layers::VisibilityCounters::exact_tests)},
+          {"components", number(&layers::VisibilityCounters::components)}};
+}
+
+Numbers of_color_warp(const WholeRun& run) {
+  double surfaces = 0;
+  for (std::size_t id = 0; id < run.pipeline.bounds.size(); ++id)
+    surfaces += run.pipeline.bounds[id].surface.has_value();
+  return {{"mean surfaces", surfaces},
+          {"fiducials computed", sum_over(run,
+                                          [](auto& r) {
+                                            double count = 0;
+                                            for (const auto& a : r.assessments)
+                                              count += a.fiducials.photometric.computed;
+                                            return count;
+                                          })},
+          {"point colours", sum_over_states(run, [](auto& s) { return s.point_colors.size(); })},
+          {"point normals", sum_over_states(run, [](auto& s) { return s.world_normals.size(); })},
+          {"body frames", sum_over_states(run, [](auto& s) { return s.world_from_body.size(); })}};
+}
+
+Numbers of_shadow_maps(const WholeRun& run) {
+  double keys = 0;
+  for (const auto& [frame, captured] : run.state.captured) keys += double(captured.shadow_maps.size());
+  return {{"maps drawn", sum_over(run, [](auto& r) { return r.shade.shadow_maps_drawn; })},
+          {"maps reused", sum_over(run, [](auto& r) { return r.shade.shadow_maps_reused; })},
+          {"casters' polygons", sum_over(run, [](auto& r) { return double(r.shade.shadow_polygons); })},
+          {"look-ups", sum_over(run, [](auto& r) { return double(r.render.shadow_lookups); })},
+          {"map bytes", double(run.state.shadow_maps.bytes())},
+          {"keys captured", keys},
+          {"shadows followed", traces_of(run, layers::ShadeTrace::Kind::Shadow)}};
+}
+
+Numbers of_reflection_maps(const WholeRun& run) {
+  return {{"pictures drawn", sum_over(run, [](auto& r) { return r.shade.reflections_drawn; })},
+          {"look-ups", sum_over(run, [](auto& r) { return double(r.render.reflection_lookups); })},
+          {"mirrored layers followed", traces_of(run, layers::ShadeTrace::Kind::Reflection)}};
+}
+
+/// Sprites with fewer texels than the display has pixels under them.
+double coarse_sprites(const WholeRun& run) {
+  double count = 0;
+  for (const LayerMemory& memory : run.state.memory)
+    count += memory.then && memory.placement.screen_from_sprite.determinant() > 1.01;
+  return count;
+}
+
+/// Every number of a run that belongs to one effect, besides its passes.
+Numbers numbers_of(const WholeRun& run, Effect effect) {
+  switch (effect) {
+    case Effect::Texture:
+      return of_textures(run);
+    case Effect::MipFilter:
+      return {
+          {"bytes of coarser levels", run.prepared.texture_bytes() - pyramid_bytes_of_finest_levels(run)}};
+    case Effect::Lighting:
+      return {{"lights captured", sum_over_states(run, [](auto& s) { return s.lights.size(); })}};
+    case Effect::Skinning:
+      return {{"joints captured", sum_over_states(run, [&](auto& s) {
+                 const Pipeline& grown = with_aggregates(run.pipeline, run.state);
+                 return s.world_from_part.size() - grown.layers.layers[s.layer].parts.size();
+               })}};
+    case Effect::SpriteCompression:
+      return of_compression(run);
+    case Effect::VisibilitySort:
+      return of_visibility_sort(run);
+    case Effect::ColorWarp:
+      return of_color_warp(run);
+    case Effect::ShadowMap:
+      return of_shadow_maps(run);
+    case Effect::ReflectionMap:
+      return of_reflection_maps(run);
+    case Effect::ShadowLayer:
+      return of_shade_layers(run, LayerKind::Shadow);
+    case Effect::SpecularLayer: {
+      Numbers n = of_shade_layers(run, LayerKind::Specular);
+      n["highlights followed"] = traces_of(run, layers::ShadeTrace::Kind::Highlight);
+      return n;
+    }
+    case Effect::ReflectionLayer:
+      return of_shade_layers(run, LayerKind::Reflection);
+    case Effect::TextureLayers:
+      return of_shade_layers(run, LayerKind::Texture);
+    case Effect::SpecularHighlight:
+    case Effect::Translucency:
+    case Effect::LayerResolution:
+    case Effect::MotionBlur:
+      break;  // leave nothing behind but their passes and the picture
+  }
+  return {};
+}
+
+double passes_of(const WholeRun& run, Effect effect) {
+  for (std::size_t e = 0; e < run.summary.effects.size(); ++e)
+    if (run.summary.effects[e].effect == effect) return run.summary.effect_passes[e];
+  return -1;
+}
+
+const WholeRun& run_with_all() {
+  static const WholeRun run(tests::every_effect(kFrames));
+  return run;
+}
+
+class UncalledEffect : public testing::TestWithParam<Effect> {};
+
+TEST_P(UncalledEffect, LeavesNothingInTheRun) {
+  const WholeRun without(without_effect(tests::every_effect(kFrames), GetParam()));
+  EXPECT_EQ(passes_of(without, GetParam()), 0);
+  EXPECT_GT(passes_of(run_with_all(), GetParam()), 0) << "the sequence must call for it";
+  const Numbers with_it = numbers_of(run_with_all(), GetParam());
+  for (const auto& [name, number] : numbers_of(without, GetParam())) {
+    EXPECT_EQ(number, 0) << name;
+    EXPECT_GT(with_it.at(name), 0) << name;
+  }
+}
+
+std::string effect_name(const testing::TestParamInfo<Effect>& info) {
+  return std::string(layers::name(info.param));
+}
+INSTANTIATE_TEST_SUITE_P(Of, UncalledEffect, testing::ValuesIn(layers::kAllEffects), effect_name);
+
+TEST(UncalledEffects, CompressionIsNotInTheLinesOfTheFrames) {
+  const WholeRun without(without_effect(tests::every_effect(kFrames), Effect::SpriteCompression));
+  for (const FrameLine& line : without.summary.frames)
+    EXPECT_THAT(json_of(line), testing::Not(testing::HasSubstr("compression")));
+  EXPECT_THAT(json_of(run_with_all().summary.frames.front()), testing::HasSubstr("compression"));
+}
+
+// Sampling along the motion makes sprites coarser than the display; with every shutter closed and every layer
+// at the display's density none is. The eye follows the ball, so every shutter is opened, at four frames a
+// second: what stands aside goes by more than a pixel.
+TEST(UncalledEffects, MotionBlurLeavesNoCoarseSprite) {
+  Variant sharp = without_effect(tests::every_effect(kFrames), Effect::LayerResolution);
+  sharp.sequence.fps = sharp.settings.fps = 4;
+  for (layers::LayerSpec& spec : sharp.sequence.layer_specs) spec.preferences.motion_blur = 1;
+  sharp.sequence.layers = layers::factor(*sharp.sequence.scene, sharp.sequence.layer_specs);
+  EXPECT_GT(coarse_sprites(WholeRun(sharp)), 0);
+  EXPECT_EQ(coarse_sprites(WholeRun(without_effect(sharp, Effect::MotionBlur))), 0);
+}
+
+TEST(UncalledEffects, LayerResolutionLeavesNoCoarseSprite) {
+  const Variant still = without_effect(tests::every_effect(kFrames), Effect::MotionBlur);
+  EXPECT_GT(coarse_sprites(WholeRun(still)), 0);
+  EXPECT_EQ(coarse_sprites(WholeRun(without_effect(still, Effect::LayerResolution))), 0);
+}
+
+}  // namespace
+}  // namespace talisman::sequences

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/results/frame_lines.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace talisman::sequences {
+namespace {
+
+FrameLine drawn_line(int frame) {
+  FrameLine line;
+  line.frame = frame;
+  line.frame_hash = "0123456789abcdef";
+  line.renders = 2;
+  line.polygons_rendered = 100;
+  line.polygons_reference = 400;
+  line.pixels_filled = 1'234'567'890'123;
+  line.plan_ms = 0.25;
+  line.io_ms = 1.5;
+  return line;
+}
+
+TEST(FrameLine, RoundTripsThroughJsonWithQuality) {
+  FrameLine line = drawn_line(7);
+  line.quality = FrameQuality{};
+  line.quality->total = {41.5, 0.99, 0.02, 17, 0.125};
+  line.quality->reuse.psnr_db = INFINITY;  // identical pictures: null in JSON, infinite again when read
+  const std::optional<FrameLine> back = frame_line_from_json(json_of(line));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(json_of(*back), json_of(line));
+  EXPECT_EQ(back->pixels_filled, 1'234'567'890'123);
+  EXPECT_TRUE(std::isinf(back->quality->reuse.psnr_db));
+}
+
+TEST(FrameLine, RoundTripsThroughJsonWithCompression) {
+  FrameLine line = drawn_line(7);
+  EXPECT_FALSE(nlohmann::json::parse(json_of(line)).contains("compression")) << "not called for: not there";
+  line.compression = CompressionReport{};
+  line.compression->original_bytes = 40960;
+  line.compression->compressed_bytes = 4096;
+  line.compression->error = {123456, 7'654'321'012'345, 0, 1024};
+  line.compression->cache = {3, 1, 400};
+  const std::optional<FrameLine> back = frame_line_from_json(json_of(line));
+  ASSERT_TRUE(back && back->compression);
+  EXPECT_EQ(json_of(*back), json_of(line));
+  EXPECT_EQ(back->compression->error, line.compression->error);
+  const nlohmann::json json = nlohmann::json::parse(json_of(line))["compression"];
+  EXPECT_EQ(json["ratio"], 10);
+  EXPECT_EQ(json["cache_hit_rate"], 0.75);
+  EXPECT_TRUE(json["alpha_psnr_db"].is_null()) << "lossless";
+}
+
+TEST(FrameLine, CutOrForeignLinesAreRefused) {
+  const std::string whole = json_of(drawn_line(7));
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_FALSE(frame_line_from_json(whole.substr(0, length))) << length;
+  EXPECT_FALSE(frame_line_from_json("{}"));
+  EXPECT_FALSE(frame_line_from_json(R"({"frame":"seven"})"));
+  EXPECT_FALSE(frame_line_from_json("[1,2,3]"));
+}
+
+TEST(FrameLine, PlannedFramesHaveNullForWhatWasNotMeasured) {
+  FrameLine line = drawn_line(0);
+  line.frame_hash.clear();
+  const nlohmann::json json = nlohmann::json::parse(json_of(line));
+  EXPECT_TRUE(json["pixels_filled"].is_null());
+  EXPECT_TRUE(json["render_ms"].is_null());
+  EXPECT_FALSE(json["plan_ms"].is_null());
+  EXPECT_FALSE(json["polygons_rendered"].is_null());
+}
+
+Summary two_layer_summary() {
+  Summary s;
+  s.sequence = "test";
+  s.layers = {{"cheap", 1, 100, 10, 10, 5.0, 1.0, {32, 32}}, {"dear", 2, 300, 2, 10, 20.0, 4.0, {64, 16}}};
+  for (int frame = 0; frame < 10; ++frame) s.frames.push_back(drawn_line(frame));
+  return s;
+}
+
+TEST(Summary, RatesAreThoseOfThePaper) {
+  const Summary s = two_layer_summary();
+  EXPECT_DOUBLE_EQ(s.mean_update_rate(), (1.0 + 0.2) / 2);
+  EXPECT_DOUBLE_EQ(s.cost_weighted_update_rate(), (100 * 1.0 + 300 * 0.2) / 400);
+  EXPECT_DOUBLE_EQ(s.layers[1].mean_geometric_px(), 2);
+}
+
+TEST(Summary, JsonHoldsEveryPromisedField) {
+  const nlohmann::json json = nlohmann::json::parse(json_of(two_layer_summary()));
+  EXPECT_EQ(json["schema"], "talisman.summary/1");
+  for (const char* field :
+       {"sequence", "policy", "warp", "frames", "display_px", "layers", "mean_update_rate",
+        "cost_weighted_update_rate", "polygons_rendered", "polygons_reference", "pixels_rendered",
+        "pixels_composited", "chunks_rendered", "chunks_clear", "effects", "modelled_ms", "wall_ms"})
+    EXPECT_TRUE(json.contains(field)) << field;
+  for (const char* field : {"name", "parts", "polygons", "renders", "update_rate", "mean_geometric_px",
+                            "max_geometric_px", "sprite_px"})
+    EXPECT_TRUE(json["layers"][0].contains(field)) << field;
+  EXPECT_FALSE(json.contains("quality")) << "quality only when asked for";
+  EXPECT_EQ(json["polygons_rendered"], 1000);
+}
+
+TEST(Summary, EmptyRunHasNoNan) {
+  const Summary empty;
+  EXPECT_EQ(json_of(empty).find("nan"), std::string::npos);
+  EXPECT_EQ(table_of(empty).find("nan"), std::string::npos);
+  EXPECT_DOUBLE_EQ(empty.mean_update_rate(), 0);
+}
+
+TEST(Summary, MeanPsnrIsThatOfTheMeanSquaredError) {
+  Summary s = two_layer_summary();
+  for (FrameLine& line : s.frames) {
+    line.quality = FrameQuality{};
+    line.quality->total.psnr_db = line.quality->reuse.psnr_db = INFINITY;
+  }
+  s.frames[0].quality->total.psnr_db = 30;  // one bad frame of ten: its squared error is spread over ten
+  const nlohmann::json json = nlohmann::json::parse(json_of(s));
+  EXPECT_NEAR(json["quality"]["psnr_db"].get<double>(), 40, 1e-9);
+  EXPECT_TRUE(json["quality_of_reuse"]["psnr_db"].is_null()) << "identical pictures";
+}
+
+TEST(HashOf, EveryBitOfThePictureCounts) {
+  chunker::Frame a{2, 1, {{1, 2, 3, 4}, {5, 6, 7, 8}}};
+  chunker::Frame b = a;
+  EXPECT_EQ(hash_of(a), hash_of(b));
+  b.pixels[1].b ^= 0x100;
+  EXPECT_NE(hash_of(a), hash_of(b));
+}
+
+}  // namespace
+}  // namespace talisman::sequences
