@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <cmath>
 
+#include "fiducials/cut_sides.h"
 #include "fiducials/fiducials.h"
 #include "fiducials/shade_drift.h"
-#include "fiducials/cut_sides.h"
 
 namespace talisman::fiducials {
 namespace {

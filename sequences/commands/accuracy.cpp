@@ -7,13 +7,13 @@
 #include <cstdio>
 #include <ostream>
 
-#include "sequences/commands/experiment_options.h"
 #include "sequences/commands/accuracy_factoring.h"
+#include "sequences/commands/accuracy_renderer.h"
+#include "sequences/commands/experiment_options.h"
+#include "sequences/experiments/warps/solver_measure.h"
 #include "sequences/files/image_io.h"
 #include "sequences/pictures/page.h"
 #include "sequences/pictures/plot.h"
-#include "sequences/commands/accuracy_renderer.h"
-#include "sequences/experiments/warps/solver_measure.h"
 
 namespace talisman::sequences {
 namespace {

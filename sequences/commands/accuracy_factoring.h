@@ -7,8 +7,8 @@
 #include <iosfwd>
 #include <string>
 
-#include "sequences/experiments/factoring/report.h"
 #include "sequences/commands/accuracy_regulator.h"
+#include "sequences/experiments/factoring/report.h"
 
 namespace talisman::sequences {
 

@@ -9,8 +9,8 @@
 #include <string>
 
 #include "sequences/commands/options.h"
-#include "sequences/experiments/regulator/report.h"
 #include "sequences/content/sequence.h"
+#include "sequences/experiments/regulator/report.h"
 
 namespace talisman::sequences {
 

@@ -11,11 +11,11 @@
 #include <CLI/CLI.hpp>
 
 #include "sequences/commands/accuracy.h"
-#include "sequences/pictures/diff.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/inspect_order.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/warps.h"
+#include "sequences/pictures/diff.h"
 
 namespace {
 

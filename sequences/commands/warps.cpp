@@ -7,12 +7,12 @@
 #include <ostream>
 
 #include "sequences/commands/experiment_options.h"
-#include "sequences/files/image_io.h"
-#include "sequences/pictures/page.h"
-#include "sequences/pictures/plot.h"
 #include "sequences/experiments/warps/objects.h"
 #include "sequences/experiments/warps/quality.h"
 #include "sequences/experiments/warps/ranking.h"
+#include "sequences/files/image_io.h"
+#include "sequences/pictures/page.h"
+#include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {
 namespace {

@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <filesystem>
 
+#include "sequences/files/program_folder.h"
+
 namespace talisman::sequences {
 
 namespace {
@@ -42,11 +44,6 @@ std::string fetch_name(const std::string& sequence_file) {
 }
 
 }  // namespace
-
-std::string program_folder() {
-  std::error_code error;
-  return fs::read_symlink("/proc/self/exe", error).parent_path().string();
-}
 
 std::string repository_root() {
   const std::string root = root_above(program_folder());

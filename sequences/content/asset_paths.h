@@ -18,9 +18,6 @@ namespace talisman::sequences {
 /// Empty when there is none (the program was moved out of its repository).
 std::string repository_root();
 
-/// Folder of the running program, without a slash at its end.
-std::string program_folder();
-
 /// The file that `path`, written in `sequence_file`, means. Throws InputError when it is missing; for content
 /// of a package the error names the command that fetches it.
 std::string resolve_asset(const std::string& path, const std::string& sequence_file, int line = 0);

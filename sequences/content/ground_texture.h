@@ -8,6 +8,7 @@
 
 #include "sequences/content/ground.h"
 #include "sequences/content/tile_image.h"
+#include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 

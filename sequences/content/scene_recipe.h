@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "layers/layer.h"
-#include "sequences/import/model_import.h"
+#include "sequences/content/ground.h"
 #include "sequences/content/shapes.h"
 #include "sequences/content/sky.h"
-#include "sequences/content/ground.h"
 #include "sequences/content/yaml_reader.h"
+#include "sequences/import/model_import.h"
 
 namespace talisman::sequences {
 

@@ -7,8 +7,9 @@
 
 #include <glm/geometric.hpp>
 
-#include "sequences/import/model_import.h"
 #include "sequences/content/tile_image.h"
+#include "sequences/import/model_import.h"
+#include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 

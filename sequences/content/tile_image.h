@@ -3,7 +3,6 @@
 
 /// Small pictures that repeat, as content is baked from them: linear RGB, bilinear lookup.
 
-#include <cstdint>
 #include <vector>
 
 #include "layers/scene.h"
@@ -29,12 +28,5 @@ TileImage cover_tile(const layers::Texture& texture);
 /// is finer than a baked texture would only alias in it. `tile_m` is the size of one repetition. Stops at odd
 /// sides.
 TileImage reduced_tile(TileImage tile, double tile_m, double texel_m);
-
-/// Relative luminance, ITU-R BT.709.
-float brightness(const layers::vec3& linear);
-
-/// One component of an sRGB colour (0 … 1) in linear light, IEC 61966-2-1, and back to a byte (clamped).
-float linear_from_srgb(float srgb);
-std::uint8_t srgb_byte(float linear);
 
 }  // namespace talisman::sequences

@@ -9,7 +9,7 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include "sequences/content/tile_image.h"
+#include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 

@@ -7,7 +7,7 @@
 #include <assimp/material.h>
 
 #include "sequences/import/assimp_scene.h"
-#include "sequences/content/tile_image.h"
+#include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 

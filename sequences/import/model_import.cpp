@@ -15,7 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "sequences/content/asset_paths.h"
+#include "sequences/files/program_folder.h"
 
 extern char** environ;
 

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "sequences/pictures/flip.h"
 #include "sequences/files/image_io.h"
+#include "sequences/pictures/flip.h"
 
 namespace talisman::sequences {
 

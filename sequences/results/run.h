@@ -11,10 +11,10 @@
 #include <atomic>
 #include <string>
 
+#include "sequences/content/sequence.h"
 #include "sequences/files/image_io.h"
 #include "sequences/files/progress.h"
 #include "sequences/results/frame_lines.h"
-#include "sequences/content/sequence.h"
 
 namespace talisman::sequences {
 

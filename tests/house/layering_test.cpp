@@ -24,6 +24,10 @@ const std::map<std::string, std::vector<std::string>> kMayInclude = {
     {"sequences", {"layers", "warp", "fiducials", "regulator", "chunker", "sequences"}},
 };
 
+/// The rooms inside sequences/: each may include itself and those before it.
+const std::vector<std::string> kRooms = {"pipeline", "files",   "pictures",    "import",
+                                         "content",  "results", "experiments", "commands"};
+
 struct SourceFile {
   std::string folder;
   fs::path path;
@@ -69,10 +73,32 @@ TEST(House, IncludesGoOneWay) {
   EXPECT_GT(project_includes, 20) << "the scan found almost nothing: is the pattern still right?";
 }
 
+TEST(House, RoomsOfSequencesIncludeOnlyThoseBeforeThem) {
+  const auto rank_of = [](const std::string& room) {
+    return std::find(kRooms.begin(), kRooms.end(), room) - kRooms.begin();
+  };
+  const std::regex include(R"re(^\s*#\s*include\s*"sequences/([a-z_]+)/[^"]+")re");
+  int between_rooms = 0;
+  for (const auto& file : sources_of({"sequences"})) {
+    const std::string room =
+        (*fs::relative(file.path, fs::path(TALISMAN_SOURCE_DIR) / "sequences").begin()).string();
+    ASSERT_LT(rank_of(room), static_cast<std::ptrdiff_t>(kRooms.size())) << file.path << " is in no room";
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+      std::smatch match;
+      if (!std::regex_search(file.lines[i], match, include)) continue;
+      between_rooms += match[1] != room;
+      EXPECT_LE(rank_of(match[1]), rank_of(room))
+          << file.path << ":" << i + 1 << ": " << room << " may not include " << match[1];
+    }
+  }
+  EXPECT_GT(between_rooms, 20) << "the scan found almost nothing: is the pattern still right?";
+}
+
 TEST(House, OnlySequencesTouchesFiles) {
   const std::regex file_io(
       R"re(^\s*#\s*include\s*<(fstream|filesystem|OpenImageIO/.*|opencv2/.*|assimp/.*|yaml-cpp/.*)>)re");
-  for (const auto& file : sources_of({"layers", "warp", "fiducials", "regulator", "chunker"}))
+  for (const auto& file :
+       sources_of({"layers", "warp", "fiducials", "regulator", "chunker", "sequences/pipeline"}))
     for (std::size_t i = 0; i < file.lines.size(); ++i)
       EXPECT_FALSE(std::regex_search(file.lines[i], file_io))
           << file.path << ":" << i + 1 << ": " << file.lines[i];

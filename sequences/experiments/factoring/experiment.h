@@ -31,8 +31,8 @@
 
 #include "sequences/experiments/factoring/prediction.h"
 #include "sequences/experiments/factoring/variants.h"
-#include "sequences/files/image_io.h"
 #include "sequences/experiments/regulator/experiment.h"
+#include "sequences/files/image_io.h"
 
 namespace talisman::sequences {
 

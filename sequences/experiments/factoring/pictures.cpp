@@ -6,7 +6,7 @@
 #include <map>
 
 #include "sequences/pictures/page.h"
-#include "sequences/content/tile_image.h"
+#include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 namespace {

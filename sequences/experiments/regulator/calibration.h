@@ -28,9 +28,9 @@
 #include <vector>
 
 #include "regulator/plan.h"
-#include "sequences/files/progress.h"
-#include "sequences/experiments/statistics.h"
 #include "sequences/content/sequence.h"
+#include "sequences/experiments/statistics.h"
+#include "sequences/files/progress.h"
 #include "sequences/pipeline/step.h"
 
 namespace talisman::sequences {

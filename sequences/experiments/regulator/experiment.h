@@ -21,8 +21,8 @@
 
 #include <vector>
 
-#include "sequences/files/progress.h"
 #include "sequences/experiments/regulator/setting_run.h"
+#include "sequences/files/progress.h"
 
 namespace talisman::sequences {
 

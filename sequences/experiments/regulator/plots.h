@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "sequences/pictures/plot.h"
 #include "sequences/experiments/regulator/report.h"
+#include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {
 

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "layers/check.h"
+#include "sequences/experiments/regulator/plots.h"
 #include "sequences/files/image_io.h"
 #include "sequences/pictures/page.h"
-#include "sequences/experiments/regulator/plots.h"
 
 namespace talisman::sequences {
 namespace {

@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "sequences/experiments/regulator/calibration.h"
-#include "sequences/experiments/regulator/lookahead_curve.h"
 #include "sequences/experiments/regulator/experiment.h"
+#include "sequences/experiments/regulator/lookahead_curve.h"
 
 namespace talisman::sequences {
 

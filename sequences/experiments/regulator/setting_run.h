@@ -8,13 +8,13 @@
 
 #include <vector>
 
-#include "sequences/pictures/diff.h"
-#include "sequences/experiments/regulator/popping.h"
-#include "sequences/pictures/quality.h"
-#include "sequences/experiments/regulator/settings.h"
-#include "sequences/results/frame_lines.h"
 #include "sequences/content/sequence.h"
+#include "sequences/experiments/regulator/popping.h"
+#include "sequences/experiments/regulator/settings.h"
+#include "sequences/pictures/diff.h"
+#include "sequences/pictures/quality.h"
 #include "sequences/pipeline/step.h"
+#include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {
 

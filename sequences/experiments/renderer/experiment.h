@@ -27,8 +27,8 @@
 #include <optional>
 #include <vector>
 
-#include "sequences/experiments/renderer/measure.h"
 #include "sequences/experiments/renderer/knobs.h"
+#include "sequences/experiments/renderer/measure.h"
 
 namespace talisman::sequences {
 

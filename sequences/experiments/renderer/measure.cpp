@@ -9,8 +9,8 @@
 #include <optional>
 
 #include "layers/check.h"
-#include "sequences/pictures/diff.h"
 #include "sequences/experiments/statistics.h"
+#include "sequences/pictures/diff.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {

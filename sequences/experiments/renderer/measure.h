@@ -13,10 +13,10 @@
 
 #include <vector>
 
+#include "sequences/experiments/without_effect.h"
 #include "sequences/files/image_io.h"
 #include "sequences/files/progress.h"
 #include "sequences/pictures/quality.h"
-#include "sequences/experiments/without_effect.h"
 
 namespace talisman::sequences {
 

@@ -6,8 +6,8 @@
 
 #include <string>
 
-#include "sequences/pictures/plot.h"
 #include "sequences/experiments/renderer/report.h"
+#include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {
 

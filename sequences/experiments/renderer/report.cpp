@@ -7,10 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sequences/files/image_io.h"
-#include "sequences/pictures/page.h"
 #include "sequences/experiments/renderer/plots.h"
 #include "sequences/experiments/renderer/sheets.h"
+#include "sequences/files/image_io.h"
+#include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
 namespace {

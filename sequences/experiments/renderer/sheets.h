@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "sequences/pictures/picture_sheet.h"
 #include "sequences/experiments/renderer/report.h"
+#include "sequences/pictures/picture_sheet.h"
 
 namespace talisman::sequences {
 

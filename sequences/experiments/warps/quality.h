@@ -9,8 +9,8 @@
 
 #include <vector>
 
-#include "sequences/pictures/quality.h"
 #include "sequences/experiments/warps/update_rate.h"
+#include "sequences/pictures/quality.h"
 
 namespace talisman::sequences {
 

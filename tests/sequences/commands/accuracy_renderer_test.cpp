@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/commands/accuracy.h"
-#include "sequences/files/image_io.h"
 #include "sequences/experiments/renderer/plots.h"
 #include "sequences/experiments/renderer/sheets.h"
+#include "sequences/files/image_io.h"
 #include "tests/sequences/csv_rows.h"
 #include "tests/sequences/temporary_folder.h"
 #include "tests/support/sequences.h"

@@ -7,10 +7,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sequences/content/ground.h"
 #include "sequences/content/ground_texture.h"
 #include "sequences/content/sky.h"
-#include "sequences/content/ground.h"
 #include "sequences/content/tile_image.h"
+#include "sequences/pictures/srgb.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {

@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 
 #include "layers/effects.h"
-#include "sequences/files/image_io.h"
 #include "sequences/commands/options.h"
 #include "sequences/content/sequence_file.h"
+#include "sequences/files/image_io.h"
 #include "tests/sequences/sequence_lines.h"
 
 namespace talisman::sequences {

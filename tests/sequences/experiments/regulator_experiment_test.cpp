@@ -10,9 +10,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/pictures/diff.h"
 #include "sequences/experiments/regulator/lookahead_curve.h"
 #include "sequences/experiments/regulator/report.h"
+#include "sequences/pictures/diff.h"
 #include "tests/support/sequences.h"
 
 namespace talisman::sequences {

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/import/model_import.h"
 #include "sequences/content/sequence.h"
+#include "sequences/import/model_import.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {

@@ -8,9 +8,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/pipeline/aggregates.h"
-#include "sequences/files/image_io.h"
 #include "sequences/commands/options.h"
+#include "sequences/files/image_io.h"
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/results/frame_lines.h"
 #include "tests/sequences/playback.h"
 #include "tests/sequences/temporary_folder.h"

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "sequences/commands/inspect_order.h"
-#include "sequences/content/layer_pairs.h"
 #include "sequences/commands/options.h"
+#include "sequences/content/layer_pairs.h"
 #include "sequences/results/frame_lines.h"
 #include "tests/sequences/playback.h"
 #include "tests/sequences/temporary_folder.h"

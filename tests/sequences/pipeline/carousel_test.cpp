@@ -9,8 +9,8 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
-#include "sequences/files/image_io.h"
 #include "sequences/commands/options.h"
+#include "sequences/files/image_io.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {

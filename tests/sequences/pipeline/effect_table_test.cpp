@@ -5,8 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include "sequences/files/image_io.h"
 #include "sequences/content/sequence.h"
+#include "sequences/files/image_io.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {

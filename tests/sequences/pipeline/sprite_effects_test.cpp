@@ -6,8 +6,8 @@
 
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/motion_blur.h"
-#include "sequences/results/frame_lines.h"
 #include "sequences/pipeline/step.h"
+#include "sequences/results/frame_lines.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {
