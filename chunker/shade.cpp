@@ -121,7 +121,7 @@ void add_light(const Shader& shader, Float4 normal, Float4 to_eye, Float4 to_lig
   if (shadow >= 0) shadowing.diffuse[shadow] = luminance(diffuse);
   if (!shader.has_specular) return;
   const float lobe = dot3(normal, normalized3(to_light + to_eye));
-  Float4 specular = color * shader.specular * splat(power_of_unit(lobe, shader.shininess));
+  Float4 specular = color * shader.specular * splat(layers::power_of_unit(lobe, shader.shininess));
   if (shadow >= 0) {
     shadowing.specular[shadow] = luminance(specular);
     specular *= splat(shadowing.visibility[shadow]);

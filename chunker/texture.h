@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "chunker/float4.h"
-#include "chunker/power.h"
+#include "layers/power.h"
 #include "layers/scene.h"
 
 namespace talisman::chunker {
@@ -86,7 +86,7 @@ inline Float4 bilinear(const MipLevel& level, float u, float v) {
 inline Float4 trilinear(const Pyramid& pyramid, float u, float v, float footprint) {
   if (!(footprint > 1)) return bilinear(pyramid.levels[0], u, v);
   const float last = static_cast<float>(pyramid.levels.size() - 1);
-  const float lambda = std::min(0.5f * coarse_log2(footprint), last);
+  const float lambda = std::min(0.5f * layers::coarse_log2(footprint), last);
   const int whole = static_cast<int>(lambda);
   const float share = lambda - static_cast<float>(whole);
   const Float4 fine = bilinear(pyramid.levels[whole], u, v);

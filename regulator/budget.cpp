@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "regulator/decision.h"
 #include "regulator/policies.h"
 #include "regulator/profile.h"
 #include "regulator/resolution.h"

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "regulator/decision.h"
 #include "regulator/policies.h"
 
 namespace talisman::regulator {

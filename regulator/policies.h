@@ -11,7 +11,6 @@
 
 namespace talisman::regulator {
 
-LayerDecision decide_every_frame(const LayerAssessment& layer, std::string reason);  // direct, reference
 LayerDecision decide_hold(int frame, const LayerAssessment& layer, const RegulatorOptions& options);
 LayerDecision decide_interpolate(int frame, const LayerAssessment& layer, const RegulatorOptions& options);
 LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options);
@@ -26,19 +25,6 @@ bool barred_by_maximum_rate(const LayerAssessment& layer);
 
 /// The fit is usable and rests on enough points to say something about the motion.
 bool has_sound_fit(const LayerAssessment& layer);
-
-/// Nothing of the layer is in view.
-LayerDecision drop(const LayerAssessment& layer);
-/// A fresh sprite; shown without a warp and without error.
-LayerDecision rerender(const LayerAssessment& layer, std::string reason);
-/// The old sprite, carried by the fitted warp.
-LayerDecision reuse(const LayerAssessment& layer, std::string reason);
-/// The old sprite, left where it was.
-LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason);
-
-/// "geometric 4.7 > 4 px" (relation is one of ">" "<=" "<" ">=").
-std::string comparison(const char* what, double value, const char* relation, double limit,
-                       const char* unit = "");
 
 /// Fewer matched points than this say too little about the motion to trust a small error.
 inline constexpr int kFewestMatchedPoints = 3;

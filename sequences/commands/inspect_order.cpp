@@ -7,7 +7,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/step.h"
 #include "sequences/results/visibility_fields.h"
 
 namespace talisman::sequences {
@@ -87,7 +89,7 @@ OrderOverTime order_over_time(const Sequence& sequence, const Settings& settings
   OrderOverTime result;
   for (int frame = 0; frame < sequence.frames; ++frame) {
     begin_frame(authored, state, frame);
-    states_at(authored, state, frame);  // the motion is not part of the sort's time
+    captured_states(authored, state, frame);  // the motion is not part of the sort's time
     const FrameOrder order = order_layers(authored, state, frame);
     const Pipeline& pipeline = with_aggregates(authored, state);
     add_order(result, frame, names_of(pipeline, order.back_to_front));

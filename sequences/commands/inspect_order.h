@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "sequences/content/sequence.h"
-#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 

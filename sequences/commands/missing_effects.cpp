@@ -5,7 +5,7 @@
 
 #include "layers/built_effects.h"
 #include "sequences/files/errors.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/pipeline/run_effects.h"
 
 namespace talisman::sequences {
 

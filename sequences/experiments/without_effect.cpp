@@ -12,6 +12,9 @@
 #include "chunker/texture.h"
 #include "layers/check.h"
 #include "layers/shading.h"
+#include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/run_effects.h"
+#include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {

@@ -34,7 +34,7 @@
 
 #include "layers/effects.h"
 #include "sequences/content/sequence.h"
-#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 

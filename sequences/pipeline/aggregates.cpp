@@ -2,7 +2,6 @@
 #include "sequences/pipeline/aggregates.h"
 
 #include <algorithm>
-#include <chrono>
 #include <numeric>
 #include <optional>
 
@@ -15,6 +14,7 @@
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_planning.h"
 #include "sequences/pipeline/resolved_cycles.h"
+#include "sequences/pipeline/stopwatch.h"
 
 namespace talisman::sequences {
 
@@ -322,10 +322,10 @@ bool exists_now(const Pipeline& pipeline, const PipelineState& state, int layer)
 }
 
 FrameOrder order_layers(const Pipeline& authored, PipelineState& state, int frame) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   FrameOrder order;
   order.merged_into.assign(authored.layers.layers.size(), -1);
-  const std::vector<LayerState>& states = states_at(authored, state, frame);
+  const std::vector<LayerState>& states = captured_states(authored, state, frame);
   const bool sorts = layers::is_built(layers::Effect::VisibilitySort) && authored.sorts_visibility &&
                      authored.settings.regulator.policy != regulator::Policy::Direct;
   const std::vector<layers::Occluder> occluders = occluders_in_view(authored, states, sorts);
@@ -342,7 +342,7 @@ FrameOrder order_layers(const Pipeline& authored, PipelineState& state, int fram
   add_shade_layers(authored, state, order);
   note_splits(state.order.merged_into, order);
   remember_order(authored, state, frame, order);
-  order.sort_ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+  order.sort_ms = watch.ms();
   return order;
 }
 

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
-#include "sequences/pipeline/step.h"
 
 namespace talisman::sequences {
 
@@ -56,9 +56,8 @@ std::vector<DirectGroup> direct_groups(const Pipeline& pipeline, int frame) {
   return groups;
 }
 
-DirectPicture draw_directly(const Pipeline& pipeline, ShadowMapStore& maps,
-                            const chunker::PreparedScene& prepared, const layers::SceneFrame& now,
-                            int frame) {
+DirectPicture draw_directly(const Drawing& drawing, int frame) {
+  const Pipeline& pipeline = drawing.pipeline;
   layers::SpritePlacement whole_display;
   whole_display.size_px = pipeline.settings.view.display_px;
   DirectPicture picture;
@@ -66,8 +65,7 @@ DirectPicture draw_directly(const Pipeline& pipeline, ShadowMapStore& maps,
   std::vector<chunker::PlacedSprite> placed;
   for (DirectGroup& group : direct_groups(pipeline, frame)) {
     std::sort(group.layers.begin(), group.layers.end());  // at equal depth the order of parts decides
-    chunker::RenderResult result =
-        draw_in_one_pass(pipeline, maps, prepared, now, group.layers, whole_display);
+    chunker::RenderResult result = draw_in_one_pass(drawing, group.layers, whole_display);
     picture.render += result.counters;
     sprites.push_back(std::move(result.sprite));
     placed.emplace_back();

@@ -22,6 +22,8 @@
 /// A frame without fades makes one pass, as if there were no fades at all.
 
 #include "chunker/composite.h"
+#include "sequences/pipeline/frame_report.h"
+#include "sequences/pipeline/pipeline.h"
 #include "sequences/pipeline/shade_passes.h"
 
 namespace talisman::sequences {
@@ -42,8 +44,7 @@ struct DirectPicture {
   chunker::RenderCounters render;
 };
 
-/// `now` is the scene at `frame`.
-DirectPicture draw_directly(const Pipeline& pipeline, ShadowMapStore& maps,
-                            const chunker::PreparedScene& prepared, const layers::SceneFrame& now, int frame);
+/// `drawing.frame` is the scene at `frame`.
+DirectPicture draw_directly(const Drawing& drawing, int frame);
 
 }  // namespace talisman::sequences

@@ -19,12 +19,13 @@ class Judge {
       : pipeline_(pipeline), state_(state), layer_(layer), frame_rendered_(frame_rendered) {}
 
   bool serves(int instant, int frame) {
-    const layers::LayerState& now = states_at(pipeline_, state_, frame)[layer_];
+    const layers::LayerState& now = captured_states(pipeline_, state_, frame)[layer_];
     if (!now.touches_display) return true;  // not shown
-    const layers::LayerState& then = states_at(pipeline_, state_, instant)[layer_];
+    const layers::LayerState& then = captured_states(pipeline_, state_, instant)[layer_];
     if (!then.touches_display) return false;  // nothing to draw
-    const regulator::LayerAssessment assessment = assess_sprite(
-        pipeline_, then, placement_at(pipeline_, state_, layer_, instant), now, frame - frame_rendered_);
+    const regulator::LayerAssessment assessment =
+        assess_sprite(pipeline_, then, captured_placement(pipeline_, state_, layer_, instant), now,
+                      frame - frame_rendered_);
     return regulator::violation_of(assessment, pipeline_.settings.regulator).empty();
   }
 

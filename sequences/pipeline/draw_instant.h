@@ -18,7 +18,7 @@
 /// expected; a wrong expectation costs renders, not error.
 
 #include "regulator/schedule.h"
-#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 

@@ -5,10 +5,14 @@
 #include <cstdlib>
 
 #include "fiducials/fiducials.h"
+#include "layers/animation.h"
 #include "layers/built_effects.h"
+#include "layers/effects.h"
 #include "layers/predict.h"
 #include "layers/shade_state.h"
+#include "regulator/policies.h"
 #include "regulator/resolution.h"
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/light_planning.h"
 #include "sequences/pipeline/motion_blur.h"
 #include "warp/quadrilateral.h"
@@ -69,10 +73,11 @@ double expected_reuse_frames(const Pipeline& pipeline, const LayerMemory& memory
 /// Where the layer's sprite lies if it is rendered at the instant of `frame`, at a regulated resolution.
 SpritePlacement place_regulated(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
                                 double resolution) {
-  const LayerState& now = states_at(pipeline, state, frame)[layer];
+  const LayerState& now = captured_states(pipeline, state, frame)[layer];
   const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
   if (!(expected_reuse > 0)) return place_layer(pipeline, now, now, 0, resolution);
-  return place_layer(pipeline, now, states_at(pipeline, state, frame + 1)[layer], expected_reuse, resolution);
+  return place_layer(pipeline, now, captured_states(pipeline, state, frame + 1)[layer], expected_reuse,
+                     resolution);
 }
 
 /// Sampling is judged by the texels that the layer's author asks for, not by the coarser ones of a sprite
@@ -85,6 +90,24 @@ void see_through_resolution(LayerAssessment& assessment, double resolution) {
 }
 
 }  // namespace
+
+Pipeline::Pipeline(const layers::Scene& scene_in, const layers::LayerSet& layers_in,
+                   const Settings& settings_in)
+    : scene(scene_in), layers(layers_in), settings(settings_in) {
+  if (regulator::follows_light(settings.regulator)) moving_carriers = layers::moving_carriers(scene);
+  for (const Layer& layer : layers.layers)
+    bounds.put(layer.id, following_light_and_faces(*this, layer,
+                                                   layers::make_layer_bound(scene, layer, settings.bound)));
+  sorts_visibility = layers::calls_for_visibility_sort(layers.layers);
+}
+
+Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in, BoundTable bounds_in)
+    : scene(authored.scene),
+      layers(layers_in),
+      settings(authored.settings),
+      bounds(std::move(bounds_in)),
+      moving_carriers(authored.moving_carriers),
+      sorts_visibility(authored.sorts_visibility) {}
 
 bool looks_ahead(const Pipeline& pipeline) {
   const Policy policy = pipeline.settings.regulator.policy;
@@ -129,6 +152,14 @@ CapturedFrame& captured_frame(PipelineState& state, int frame) {
   return it->second;
 }
 
+/// The scene of a frame as far as it is known now.
+SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, int frame) {
+  const bool is_ahead = state.motion && frame > state.motion->frame;
+  return is_ahead
+             ? layers::predict_linear(state.motion->before, state.motion->now, frame - state.motion->frame)
+             : scene_at(pipeline, frame);
+}
+
 }  // namespace
 
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
@@ -148,15 +179,7 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
   if (policy != Policy::Lookahead) forget(state, captured.upper_bound(frame + 1), captured.end());
 }
 
-/// The scene of a frame as far as it is known now.
-SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, int frame) {
-  const bool is_ahead = state.motion && frame > state.motion->frame;
-  return is_ahead
-             ? layers::predict_linear(state.motion->before, state.motion->now, frame - state.motion->frame)
-             : scene_at(pipeline, frame);
-}
-
-const std::vector<LayerState>& states_at(const Pipeline& authored, PipelineState& state, int frame) {
+const std::vector<LayerState>& captured_states(const Pipeline& authored, PipelineState& state, int frame) {
   CapturedFrame& captured = captured_frame(state, frame);
   if (captured.generation == state.order.generation) return captured.states;
   const Pipeline& pipeline = with_aggregates(authored, state);
@@ -179,12 +202,13 @@ const std::vector<LayerState>& states_at(const Pipeline& authored, PipelineState
   }
   if (!scene_frame) return captured.states;
   layers::capture_influences(*scene_frame, pipeline.layers, captured.states);
-  captured.shadow_maps = shadow_map_keys(pipeline, *scene_frame);
+  captured.shadow_maps = shadow_map_keys(pipeline.scene, pipeline.layers, *scene_frame);
   return captured.states;
 }
 
-const SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer, int frame) {
-  states_at(pipeline, state, frame);
+const SpritePlacement& captured_placement(const Pipeline& pipeline, PipelineState& state, int layer,
+                                          int frame) {
+  captured_states(pipeline, state, frame);
   std::optional<SpritePlacement>& known = state.captured.at(frame).placements[layer];
   if (!known) known = place_regulated(pipeline, state, layer, frame, 1);
   return *known;
@@ -246,7 +270,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
 LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int layer_id, int frame) {
   const Layer& layer = pipeline.layers.layers[layer_id];
   const LayerMemory& memory = state.memory[layer_id];
-  const LayerState& now = states_at(pipeline, state, frame)[layer_id];
+  const LayerState& now = captured_states(pipeline, state, frame)[layer_id];
   LayerAssessment assessment;
   if (now.touches_display && memory.then)
     assessment =
@@ -259,8 +283,9 @@ LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int
   assessment.has_sprite = memory.then.has_value();
   if (!assessment.in_view) return assessment;
   const bool must_be_exact = pipeline.settings.regulator.policy == Policy::Budget;
-  assessment.cost = must_be_exact ? cost_of(layer, placement_at(pipeline, state, layer_id, frame).size_px)
-                                  : estimated_cost(layer, now);
+  assessment.cost = must_be_exact
+                        ? cost_of(layer, captured_placement(pipeline, state, layer_id, frame).size_px)
+                        : estimated_cost(layer, now);
   return assessment;
 }
 

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 
@@ -30,12 +30,13 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame);
 /// The states of all layers at `frame`, by layer id; captured once and kept in `state` (a frame ahead that
 /// was looked at is not captured again when it comes). Aggregates (sequences/pipeline/aggregates.h) are captured if
 /// they exist in the frame that was ordered last. The reference holds until aggregates are made.
-const std::vector<layers::LayerState>& states_at(const Pipeline& pipeline, PipelineState& state, int frame);
+const std::vector<layers::LayerState>& captured_states(const Pipeline& pipeline, PipelineState& state,
+                                                       int frame);
 
 /// Where the layer's sprite lies if it is rendered at the instant of `frame`. Extents grow only where the
 /// sprite is to be moved later. Computed once for each instant.
-const layers::SpritePlacement& placement_at(const Pipeline& pipeline, PipelineState& state, int layer,
-                                            int frame);
+const layers::SpritePlacement& captured_placement(const Pipeline& pipeline, PipelineState& state, int layer,
+                                                  int frame);
 
 /// Step 6 of [LS97 6], policy Budget: chooses the resolution of every layer in view, and computes placement
 /// and cost again where it is not 1.

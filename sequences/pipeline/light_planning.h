@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 

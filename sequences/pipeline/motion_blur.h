@@ -11,7 +11,7 @@
 /// sequence, not of the extents, so every policy samples a layer alike. Nothing here is called for layers
 /// without the preference.
 
-#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 

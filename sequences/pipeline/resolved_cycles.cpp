@@ -3,8 +3,6 @@
 
 #include <algorithm>
 
-#include "sequences/pipeline/step.h"
-
 namespace talisman::sequences {
 
 namespace {

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/pipeline/sprite_compression.h"
 
-#include <chrono>
 #include <utility>
+
+#include "sequences/pipeline/stopwatch.h"
 
 namespace talisman::sequences {
 
@@ -25,7 +26,7 @@ CompressionReport& CompressionReport::operator+=(const CompressionReport& o) {
 
 void keep_compressed(int layer, const chunker::Sprite& drawn, const chunker::CompressionOptions& options,
                      CompressedSprites& compressed, chunker::SpriteStore& store, CompressionReport* report) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   chunker::CompressedSprite& kept = compressed[layer] = chunker::compress(drawn, options);
   chunker::Sprite shown = chunker::decompress(kept);
   if (report) {
@@ -35,15 +36,14 @@ void keep_compressed(int layer, const chunker::Sprite& drawn, const chunker::Com
     report->chunks += kept.stored_chunks();
     report->raw_chunks += kept.raw_chunks();
     report->error += chunker::compression_error(drawn, shown);
-    report->compress_ms +=
-        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    report->compress_ms += watch.ms();
   }
   store.put(layer, std::move(shown), kept.bytes());
 }
 
 chunker::CacheCounters model_chunk_reads(std::span<const chunker::PlacedCompressed> sprites,
                                          layers::ivec2 display_px) {
-  chunker::ChunkCache cache(kCacheChunks);
+  chunker::ChunkCache cache(kCache_chunks);
   chunker::touch_chunks(sprites, display_px, cache);
   return cache.counters();
 }

@@ -21,7 +21,7 @@ using CompressedSprites = std::map<int, chunker::CompressedSprite>;
 
 /// Chunks in the modelled cache: 256 KiB of decompressed texels, a row of chunks across a 1024-pixel display
 /// for two layers. [A §1: unpublished, assumed.]
-inline constexpr int kCacheChunks = 64;
+inline constexpr int kCache_chunks = 64;
 
 /// Of one frame: the sprites drawn for it, and what the compositor read of all that it showed.
 struct CompressionReport {

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/pipeline/step.h"
 
-#include <chrono>
 #include <map>
 
 #include "layers/animation.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/effects.h"
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/direct_picture.h"
 #include "sequences/pipeline/draw_instant.h"
 #include "sequences/pipeline/extended_composite.h"
 #include "sequences/pipeline/layer_planning.h"
-#include "sequences/pipeline/light_planning.h"
+#include "sequences/pipeline/shade_passes.h"
+#include "sequences/pipeline/stopwatch.h"
 
 namespace talisman::sequences {
 
@@ -24,16 +25,6 @@ using layers::SceneFrame;
 using layers::SpritePlacement;
 using regulator::Action;
 using regulator::LayerAssessment;
-
-class Stopwatch {
- public:
-  double ms() const {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// What the policy `reference` would render for this frame: every layer in view, without growth.
 std::int64_t reference_pixels(const Pipeline& pipeline, const std::vector<LayerState>& states,
@@ -78,9 +69,9 @@ int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
   if (predicts(pipeline)) decision.reason += " if the motion goes on";
   if (run.instant == frame) return frame;
   const LayerAssessment shown =
-      assess_sprite(pipeline, states_at(pipeline, state, run.instant)[decision.layer],
-                    placement_at(pipeline, state, decision.layer, run.instant),
-                    states_at(pipeline, state, frame)[decision.layer], 0);
+      assess_sprite(pipeline, captured_states(pipeline, state, run.instant)[decision.layer],
+                    captured_placement(pipeline, state, decision.layer, run.instant),
+                    captured_states(pipeline, state, frame)[decision.layer], 0);
   decision.shown_warp = shown.fitted.warp;
   decision.shown_geometric_px = shown.fiducials.geometric.px;
   decision.shown_color = shown.fiducials.photometric.multiplier;
@@ -96,8 +87,8 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
       const int instant =
           looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
       // The placement first: it depends on how long the old sprite lasted.
-      memory.placement = placement_at(pipeline, state, decision.layer, instant);
-      memory.then = states_at(pipeline, state, instant)[decision.layer];
+      memory.placement = captured_placement(pipeline, state, decision.layer, instant);
+      memory.then = captured_states(pipeline, state, instant)[decision.layer];
       memory.frame_rendered = report.frame;
       memory.depicts_frame = instant;
       memory.drawn = false;
@@ -106,7 +97,8 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
       memory.frames_short_of_area = 0;
       const Layer& layer = pipeline.layers.layers[decision.layer];
       decision.cost = cost_of(layer, memory.placement.size_px);
-      state.shade_plan.add_render(pipeline, layer, state.captured.at(instant).shadow_maps, report.shade);
+      state.shade_plan.add_render(pipeline.scene, pipeline.layers, layer,
+                                  state.captured.at(instant).shadow_maps, report.shade);
     }
     memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
     decision.depicts_frame = memory.depicts_frame;
@@ -151,7 +143,7 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
     if (!as_of_now && others.count(key) == 0)
       others.emplace(key, scene_expected(pipeline, key.first, instant));
     chunker::RenderResult result =
-        draw_layer(pipeline, state.shadow_maps, prepared, as_of_now ? now : others.at(key),
+        draw_layer({pipeline, state.shadow_maps, prepared, as_of_now ? now : others.at(key)},
                    pipeline.layers.layers[sprite.layer], memory.placement);
     const bool is_late = memory.frame_rendered != report.frame;
     if (const chunker::CompressionOptions* compression = compression_of(pipeline))
@@ -206,7 +198,7 @@ void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& sta
   chunker::CompositeResult result;
   const Stopwatch render_watch;
   if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
-    DirectPicture picture = draw_directly(authored, state.shadow_maps, prepared, now, report.frame);
+    DirectPicture picture = draw_directly({authored, state.shadow_maps, prepared, now}, report.frame);
     result = std::move(picture.composite);
     report.render += picture.render;
     report.times.render_ms = render_watch.ms();
@@ -225,24 +217,6 @@ void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& sta
 }
 
 }  // namespace
-
-Pipeline::Pipeline(const layers::Scene& scene_in, const layers::LayerSet& layers_in,
-                   const Settings& settings_in)
-    : scene(scene_in), layers(layers_in), settings(settings_in) {
-  if (regulator::follows_light(settings.regulator)) moving_carriers = layers::moving_carriers(scene);
-  for (const Layer& layer : layers.layers)
-    bounds.put(layer.id, following_light_and_faces(*this, layer,
-                                                   layers::make_layer_bound(scene, layer, settings.bound)));
-  sorts_visibility = layers::calls_for_visibility_sort(layers.layers);
-}
-
-Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in, BoundTable bounds_in)
-    : scene(authored.scene),
-      layers(layers_in),
-      settings(authored.settings),
-      bounds(std::move(bounds_in)),
-      moving_carriers(authored.moving_carriers),
-      sorts_visibility(authored.sorts_visibility) {}
 
 FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared) {
@@ -265,7 +239,7 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
     fit_resolutions(pipeline, state, frame, report.assessments);
   report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
   double bookkeeping_ms = plan_watch.ms();
-  report.pixels_reference = reference_pixels(pipeline, states_at(pipeline, state, frame), report.order);
+  report.pixels_reference = reference_pixels(pipeline, captured_states(pipeline, state, frame), report.order);
   if (pipeline.settings.budget_gap) report.budget_gap = gap_of(pipeline, report);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);
@@ -274,15 +248,14 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.
-  if (prepared)
-    draw(authored, pipeline, state, pipeline.scene.at(time_of(pipeline, frame)), *prepared, report);
+  if (prepared) draw(authored, pipeline, state, scene_at(pipeline, frame), *prepared, report);
   return report;
 }
 
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
   ShadowMapStore maps;
-  return draw_directly(pipeline, maps, prepared, pipeline.scene.at(time_of(pipeline, frame)), frame)
-      .composite.frame;
+  const SceneFrame now = scene_at(pipeline, frame);
+  return draw_directly({pipeline, maps, prepared, now}, frame).composite.frame;
 }
 
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {

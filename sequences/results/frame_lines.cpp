@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "regulator/profile.h"
+#include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/run_effects.h"
 #include "sequences/results/compression_json.h"
 #include "sequences/results/visibility_fields.h"
 
@@ -300,14 +302,6 @@ bool is_drawn_with(const layers::EffectCall& effect, const layers::Layer& layer)
 }
 
 }  // namespace
-
-layers::RunEffects run_effects(const Settings& settings) {
-  layers::RunEffects run;
-  if (settings.compression) run.compression_quality = settings.compression->quality;
-  run.mip_filter = settings.render.mipmaps && settings.render.filter == chunker::TextureFilter::Trilinear;
-  run.follows_light = regulator::asks_for_light(settings.regulator);
-  return run;
-}
 
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   const Settings& settings = pipeline.settings;

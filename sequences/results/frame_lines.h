@@ -17,7 +17,8 @@
 
 #include "layers/effects.h"
 #include "sequences/pictures/quality.h"
-#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/frame_report.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 
@@ -119,9 +120,6 @@ struct Summary {
   ResolvedCounters resolved() const;               ///< added up over the frames; registers: at most
   double planning_us_per_layer_and_frame() const;  ///< plan time over layers × frames
 };
-
-/// What the settings ask for, whatever the scene.
-layers::RunEffects run_effects(const Settings& settings);
 
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence);
 /// Adds one frame's decisions; aggregates are added to the layers when they are first shown.

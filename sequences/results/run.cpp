@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/run.h"
 
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -13,6 +12,9 @@
 #include "sequences/files/frame_writer.h"
 #include "sequences/files/line_file.h"
 #include "sequences/pictures/overlay.h"
+#include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/stopwatch.h"
 #include "sequences/results/separate_pictures.h"
 
 namespace talisman::sequences {
@@ -230,10 +232,9 @@ class Runner {
     FrameLine line = line_of(pipeline, report);
     line.quality = quality;
     if (prepared_) {
-      const auto start = std::chrono::steady_clock::now();
+      const Stopwatch watch;
       write_picture(pipeline, report, options_);
-      line.io_ms =
-          std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+      line.io_ms = watch.ms();
     }
     frames_->write(json_of(line));
     add_line(line);

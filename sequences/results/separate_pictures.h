@@ -10,7 +10,8 @@
 
 #include <string>
 
-#include "sequences/pipeline/step.h"
+#include "sequences/pipeline/frame_report.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 

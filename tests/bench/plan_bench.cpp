@@ -86,7 +86,7 @@ void Order(benchmark::State& run) {
   for (auto _ : run) {
     run.PauseTiming();
     frame = (frame + 1) % kFrames;
-    sequences::states_at(pipeline, state, frame);
+    sequences::captured_states(pipeline, state, frame);
     run.ResumeTiming();
     benchmark::DoNotOptimize(sequences::order_layers(pipeline, state, frame));
   }

@@ -11,6 +11,9 @@
 namespace talisman::chunker {
 namespace {
 
+using layers::coarse_log2;
+using layers::power_of_unit;
+
 layers::Texture texture(int width, int height, std::vector<std::uint8_t> rgba) {
   layers::Texture t;
   t.width = width;

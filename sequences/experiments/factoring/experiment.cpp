@@ -7,7 +7,9 @@
 #include <utility>
 
 #include "layers/check.h"
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/shade_passes.h"
 
 namespace talisman::sequences {
 namespace {
@@ -75,7 +77,7 @@ class LayerPainter {
     for (const ShownSprite& sprite : group) {
       TALISMAN_CHECK(state_.memory[sprite.layer].placement == placement);
       picture.terms.push_back({layer(sprite).kind,
-                               draw_layer_linear(flush_, maps_, prepared_, now_, layer(sprite), placement),
+                               draw_layer_linear({flush_, maps_, prepared_, now_}, layer(sprite), placement),
                                sprite.multipliers.color});
     }
     const Layer& whole = layer_named(whole_, layer(group.front()).name);
@@ -83,7 +85,7 @@ class LayerPainter {
     const auto base = two ? chunker::BasePasses::Two : chunker::BasePasses::One;
     const layers::vec2 gains =
         two ? layers::vec2(group[0].multipliers.color.x, group[1].multipliers.color.x) : layers::vec2(1);
-    const auto terms = draw_terms(whole_, whole_maps_, prepared_, now_, whole, placement, base);
+    const auto terms = draw_terms({whole_, whole_maps_, prepared_, now_}, whole, placement, base);
     picture.surface = chunker::surface_of(terms, gains);
     picture.unfactored = chunker::blend_terms(terms, gains);
   }

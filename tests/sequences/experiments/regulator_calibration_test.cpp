@@ -122,9 +122,9 @@ TEST(CalibrationSamples, FiducialsAreThoseThatTheRegulatorSees) {
   for (const CalibrationSample& sample : samples) {
     const int then = sample.frame - sample.age_frames;
     const regulator::LayerAssessment assessment =
-        assess_sprite(pipeline, states_at(pipeline, state, then)[sample.layer],
-                      placement_at(pipeline, state, sample.layer, then),
-                      states_at(pipeline, state, sample.frame)[sample.layer], sample.age_frames);
+        assess_sprite(pipeline, captured_states(pipeline, state, then)[sample.layer],
+                      captured_placement(pipeline, state, sample.layer, then),
+                      captured_states(pipeline, state, sample.frame)[sample.layer], sample.age_frames);
     EXPECT_EQ(sample.fiducials[0], assessment.fiducials.geometric.px);
     EXPECT_GE(sample.error, 0);
     EXPECT_LE(sample.error, 255);

@@ -112,7 +112,8 @@ chunker::Sprite mirrored_in(const Show& show, const std::string& name) {
   placement.size_px = kDisplay;
   ShadowMapStore maps;
   const chunker::PreparedScene prepared(show.room.scene);
-  return draw_layer(show.pipeline, maps, prepared, show.room.scene.at(0), show.layer(name), placement).sprite;
+  return draw_layer({show.pipeline, maps, prepared, show.room.scene.at(0)}, show.layer(name), placement)
+      .sprite;
 }
 
 // One bounce: the wall as it is seen in the floor is the same whether the wall mirrors or not.

@@ -29,14 +29,14 @@ TEST(AssessSprite, EmptySpriteIsNeverGoodEnoughForWhatIsInViewNow) {
   const Planning p;
   const Pipeline pipeline(p.scene, p.layers, p.settings);
   PipelineState state(pipeline);
-  const layers::LayerState& then = states_at(pipeline, state, 3)[kCube];
-  const layers::LayerState& now = states_at(pipeline, state, 4)[kCube];
+  const layers::LayerState& then = captured_states(pipeline, state, 3)[kCube];
+  const layers::LayerState& now = captured_states(pipeline, state, 4)[kCube];
   regulator::RegulatorOptions lenient;
   lenient.geometric_px = 1e6;
   const auto violation = [&](const layers::SpritePlacement& placement, const layers::LayerState& shown) {
     return regulator::violation_of(assess_sprite(pipeline, then, placement, shown, 1), lenient);
   };
-  EXPECT_EQ(violation(placement_at(pipeline, state, kCube, 3), now), "");
+  EXPECT_EQ(violation(captured_placement(pipeline, state, kCube, 3), now), "");
   EXPECT_EQ(violation({}, now), "matched points 0 < 3");
   EXPECT_EQ(violation({}, then), "") << "what would be drawn identically, empty or not, is spared";
 }
@@ -47,12 +47,12 @@ TEST(StatesAt, AreCapturedOnceAndForgottenWhenTheirFrameIsPast) {
   const Pipeline pipeline(p.scene, p.layers, p.settings);
   PipelineState state(pipeline);
   begin_frame(pipeline, state, 2);
-  const layers::LayerState* first = states_at(pipeline, state, 7).data();
-  states_at(pipeline, state, 2);
-  EXPECT_EQ(states_at(pipeline, state, 7).data(), first);
+  const layers::LayerState* first = captured_states(pipeline, state, 7).data();
+  captured_states(pipeline, state, 2);
+  EXPECT_EQ(captured_states(pipeline, state, 7).data(), first);
   begin_frame(pipeline, state, 7);
   EXPECT_EQ(state.captured.size(), 1u);
-  EXPECT_EQ(states_at(pipeline, state, 7).data(), first);
+  EXPECT_EQ(captured_states(pipeline, state, 7).data(), first);
 }
 
 TEST(StatesAt, ARunKeepsFewFramesInMemoryUnlessItLooksAhead) {
@@ -72,10 +72,10 @@ TEST(PlacementAt, IsTheSameWhenAskedAgain) {
   const Planning p;
   const Pipeline pipeline(p.scene, p.layers, p.settings);
   PipelineState once(pipeline), again(pipeline);
-  const layers::SpritePlacement before = placement_at(pipeline, once, kCube, 5);
-  placement_at(pipeline, again, kCube, 9);
-  EXPECT_EQ(placement_at(pipeline, again, kCube, 5), before);
-  EXPECT_EQ(placement_at(pipeline, once, kCube, 5), before);
+  const layers::SpritePlacement before = captured_placement(pipeline, once, kCube, 5);
+  captured_placement(pipeline, again, kCube, 9);
+  EXPECT_EQ(captured_placement(pipeline, again, kCube, 5), before);
+  EXPECT_EQ(captured_placement(pipeline, once, kCube, 5), before);
   EXPECT_FALSE(before.empty());
 }
 

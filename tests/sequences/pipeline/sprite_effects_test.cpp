@@ -113,7 +113,7 @@ TEST(MotionBlur, FasterLayersAreSampledLessDenselyAndNeverBelowASixteenth) {
   const Pipeline a(slow.scene, slow.layers, slow.settings), b(fast.scene, fast.layers, fast.settings);
   PipelineState state(a);
   bool some_blur = false;
-  for (const layers::LayerState& now : states_at(a, state, 3)) {
+  for (const layers::LayerState& now : captured_states(a, state, 3)) {
     const MotionSampling little = motion_sampling(a, now), much = motion_sampling(b, now);
     EXPECT_LE(much.density, little.density);
     EXPECT_GE(much.density, 1.0 / 16);
@@ -129,7 +129,7 @@ TEST(MotionBlur, AtRestThereIsNone) {
   Settings settings;
   const Pipeline pipeline(scene, set, settings);
   PipelineState state(pipeline);
-  EXPECT_EQ(motion_sampling(pipeline, states_at(pipeline, state, 0)[0]).density, 1);
+  EXPECT_EQ(motion_sampling(pipeline, captured_states(pipeline, state, 0)[0]).density, 1);
 }
 
 TEST(MotionBlur, BlurThatIsNotThatOfNowCountsAsSampling) {
@@ -141,8 +141,8 @@ TEST(MotionBlur, BlurThatIsNotThatOfNowCountsAsSampling) {
   bool some_differ = false;
   for (int layer = 0; layer < 3; ++layer)
     for (int frame = 0; frame < 8; ++frame) {
-      const layers::LayerState& then = states_at(pipeline, state, frame)[layer];
-      const layers::LayerState& now = states_at(pipeline, state, frame + 4)[layer];
+      const layers::LayerState& then = captured_states(pipeline, state, frame)[layer];
+      const layers::LayerState& now = captured_states(pipeline, state, frame + 4)[layer];
       const double ratio = motion_sampling(pipeline, now).density / motion_sampling(pipeline, then).density;
       regulator::LayerAssessment other, same;
       same.identical = other.identical = true;

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What is decided about a layer, put into words and numbers: the decisions that every policy makes.
+
+#include <string>
+
+#include "regulator/plan.h"
+
+namespace talisman::regulator {
+
+/// Nothing of the layer is in view.
+LayerDecision drop(const LayerAssessment& layer);
+/// A fresh sprite; shown without a warp and without error.
+LayerDecision rerender(const LayerAssessment& layer, std::string reason);
+/// The policies `direct` and `reference`: a fresh sprite, whatever there is.
+LayerDecision decide_every_frame(const LayerAssessment& layer, std::string reason);
+/// The old sprite, carried by the fitted warp.
+LayerDecision reuse(const LayerAssessment& layer, std::string reason);
+/// The old sprite, left where it was.
+LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason);
+
+/// "geometric 4.7 > 4 px" (relation is one of ">" "<=" "<" ">=").
+std::string comparison(const char* what, double value, const char* relation, double limit,
+                       const char* unit = "");
+
+}  // namespace talisman::regulator

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What is known of one frame when it is done: its order, its plan, what was shown, what it took, and its picture.
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "chunker/composite.h"
+#include "chunker/render.h"
+#include "regulator/budget.h"
+#include "regulator/plan.h"
+#include "sequences/pipeline/frame_order.h"
+#include "sequences/pipeline/shade_memory.h"
+#include "sequences/pipeline/sprite_compression.h"
+
+namespace talisman::sequences {
+
+/// What a layer's sprite is multiplied with where it is shown.
+struct SpriteMultipliers {
+  float alpha = 1;              ///< all four channels
+  layers::vec3 color{1, 1, 1};  ///< colour alone
+};
+
+struct StageTimes {
+  double plan_ms = 0, render_ms = 0, composite_ms = 0;
+};
+
+/// A sprite as it is shown in this frame, back to front.
+struct ShownSprite {
+  int layer = -1;
+  layers::dmat3 screen_from_sprite{1.0};
+  layers::ivec2 size_px{0, 0};
+  int age_frames = 0;
+  SpriteMultipliers multipliers;
+};
+
+struct FrameReport {
+  int frame = 0;
+  FrameOrder order;
+  regulator::FramePlan plan;
+  std::vector<regulator::LayerAssessment>
+      assessments;                    ///< by layer id, aggregates behind the author's layers
+  std::vector<ShownSprite> shown;     ///< back to front
+  int layers_assessed = 0;            ///< in view with an old sprite: fitted and judged
+  std::int64_t pixels_reference = 0;  ///< texels that `reference` would render for this frame
+  chunker::RenderCounters render;     ///< summed over the layers rendered for this frame
+  std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
+  chunker::CompositeCounters composite;
+  std::optional<CompressionReport> compression;  ///< of the sprites drawn for this frame, and of its reads
+  std::int64_t sprite_bytes = 0;                 ///< in the store after this frame
+  ShadeCounters shade;                           ///< passes behind shadows and reflections, as planned
+  int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
+  std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
+  StageTimes times;
+  chunker::Frame picture;  ///< empty when only planned
+};
+
+}  // namespace talisman::sequences
