@@ -21,9 +21,9 @@ using Json = nlohmann::ordered_json;
 /// The layers of every frame add up to nothing that says something.
 constexpr std::span kCounters = std::span(kVisibilityFields).subspan(1);
 
-std::vector<std::string> names_of(const Pipeline& pipeline, const std::vector<int>& ids) {
+std::vector<std::string> names_of(const LayerTable& layers, const std::vector<int>& ids) {
   std::vector<std::string> names;
-  for (const int id : ids) names.push_back(pipeline.layers.layers[id].name);
+  for (const int id : ids) names.push_back(layers[id].name);
   return names;
 }
 
@@ -40,20 +40,20 @@ void add_order(OrderOverTime& result, int frame, std::vector<std::string> names)
     result.runs.push_back({frame, frame, std::move(names)});
 }
 
-void add_merger(OrderOverTime& result, int frame, const Pipeline& pipeline, const Merger& merger) {
-  const layers::Layer& layer = pipeline.layers.layers[merger.layer];
+void add_merger(OrderOverTime& result, int frame, const LayerTable& layers, const Merger& merger) {
+  const layers::Layer& layer = layers[merger.layer];
   const auto lasts = [&](const MergedRun& run) { return run.name == layer.name && run.last == frame - 1; };
   const auto run = std::find_if(result.merged.begin(), result.merged.end(), lasts);
   if (run != result.merged.end())
     run->last = frame;
   else
-    result.merged.push_back({frame, frame, layer.name, names_of(pipeline, layer.members), merger.why});
+    result.merged.push_back({frame, frame, layer.name, names_of(layers, layer.members), merger.why});
 }
 
 /// The same layers may be related otherwise in the next frame: then the expression is another.
-void add_resolved(OrderOverTime& result, int frame, const Pipeline& pipeline, const ResolvedCycle& cycle) {
-  const std::vector<std::string> members = names_of(pipeline, cycle.layers);
-  const std::string why = to_string(cycle.expression, pipeline.layers.layers);
+void add_resolved(OrderOverTime& result, int frame, const LayerTable& layers, const ResolvedCycle& cycle) {
+  const std::vector<std::string> members = names_of(layers, cycle.layers);
+  const std::string why = to_string(cycle.expression, layers.set().layers);
   const auto lasts = [&](const MergedRun& run) {
     return run.members == members && run.why == why && run.last == frame - 1;
   };
@@ -84,17 +84,16 @@ std::string line(const char* pattern, auto... values) {
 }  // namespace
 
 OrderOverTime order_over_time(const Sequence& sequence, const Settings& settings) {
-  const Pipeline authored(*sequence.scene, sequence.layers, settings);
-  PipelineState state(authored);
+  const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, settings);
+  PipelineState state(pipeline);
   OrderOverTime result;
   for (int frame = 0; frame < sequence.frames; ++frame) {
-    begin_frame(authored, state, frame);
-    captured_states(authored, state, frame);  // the motion is not part of the sort's time
-    const FrameOrder order = order_layers(authored, state, frame);
-    const Pipeline& pipeline = with_aggregates(authored, state);
-    add_order(result, frame, names_of(pipeline, order.back_to_front));
-    for (const Merger& merger : order.mergers) add_merger(result, frame, pipeline, merger);
-    for (const ResolvedCycle& cycle : order.resolved) add_resolved(result, frame, pipeline, cycle);
+    begin_frame(pipeline, state, frame);
+    captured_states(pipeline, state, frame);  // the motion is not part of the sort's time
+    const FrameOrder order = order_layers(pipeline, state, frame);
+    add_order(result, frame, names_of(state.layers, order.back_to_front));
+    for (const Merger& merger : order.mergers) add_merger(result, frame, state.layers, merger);
+    for (const ResolvedCycle& cycle : order.resolved) add_resolved(result, frame, state.layers, cycle);
     add_counters(result, order);
   }
   return result;

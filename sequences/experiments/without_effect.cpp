@@ -12,7 +12,6 @@
 #include "chunker/texture.h"
 #include "layers/check.h"
 #include "layers/shading.h"
-#include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/run_effects.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
@@ -218,10 +217,10 @@ void remove_shade_layers(Variant& variant, LayerKind kind, Term term) {
 
 /// Ids of the geometry layers in the order in which the first frame shows them, merged ones side by side.
 std::vector<int> first_order(const Variant& variant) {
-  const Pipeline pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
+  const Pipeline pipeline = make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   PipelineState state(pipeline);
   const FrameReport report = step(pipeline, state, 0, nullptr);
-  const std::vector<Layer>& layers = with_aggregates(pipeline, state).layers.layers;
+  const LayerTable& layers = report.layers;
   std::vector<int> order;
   for (const int id : report.order.back_to_front)
     if (layers[id].is_aggregate())

@@ -18,20 +18,13 @@
 
 namespace talisman::sequences {
 
-struct GrownPipeline {
-  GrownPipeline(const Pipeline& authored, layers::LayerSet grown, BoundTable bounds)
-      : layers(std::move(grown)), pipeline(authored, layers, std::move(bounds)) {}
-  layers::LayerSet layers;
-  Pipeline pipeline;
-};
-
 namespace {
 
 using layers::Layer;
 using layers::LayerState;
 using layers::MergedComponent;
 
-int authored_count(const Pipeline& authored) { return static_cast<int>(authored.layers.layers.size()); }
+int authored_count(const Pipeline& pipeline) { return static_cast<int>(pipeline.authored.size()); }
 
 // --- Making aggregates ---
 
@@ -49,13 +42,13 @@ std::string take_name(AggregateHistory& history, const std::string& wished) {
 }
 
 /// The serial number of the aggregate, which is entered if these layers never were merged before.
-int serial_of(const Pipeline& authored, AggregateHistory& history, const Members& members) {
+int serial_of(const Pipeline& pipeline, AggregateHistory& history, const Members& members) {
   if (history.names.empty())
-    for (const Layer& layer : authored.layers.layers) take_name(history, layer.name);
+    for (const Layer& layer : pipeline.authored) take_name(history, layer.name);
   const int next = static_cast<int>(history.records.size());
   const auto [it, is_new] = history.serial_of.try_emplace(members, next);
   if (!is_new) return it->second;
-  const Layer made = layers::aggregate_of(authored.layers.layers, members, -1);
+  const Layer made = layers::aggregate_of(pipeline.authored.set().layers, members, -1);
   history.records.push_back(
       {take_name(history, made.name), static_cast<int>(made.parts.size()), made.polygons});
   return next;
@@ -70,25 +63,46 @@ void forget_captured(PipelineState& state, int id) {
   }
 }
 
-/// The tables that grow while the aggregates of one frame are made; copied once, and only if one is new.
+/// A copy of a table to which aggregates are added.
+class GrowingTable {
+ public:
+  explicit GrowingTable(const LayerTable& before) : set_(before.set()), bounds_(before.bounds()) {}
+
+  /// `id` is that of an aggregate in the table, or the next one.
+  void put_aggregate(const Pipeline& pipeline, const Members& members, int id, const std::string& name) {
+    Layer aggregate = layers::aggregate_of(pipeline.authored.set().layers, members, id);
+    aggregate.name = name;
+    std::vector<const layers::LayerBound*> of_members;
+    for (const int member : members) of_members.push_back(&pipeline.authored.bound(member));
+    bounds_.put(id, following_light_and_faces(pipeline, aggregate, layers::aggregate_bound(of_members)));
+    set_.layers.resize(std::max(set_.layers.size(), static_cast<std::size_t>(id) + 1));
+    set_.layers[id] = std::move(aggregate);
+  }
+
+  LayerTable finished() { return {std::move(set_), std::move(bounds_)}; }
+
+ private:
+  layers::LayerSet set_;
+  BoundTable bounds_;
+};
+
+/// The layers of a state while the aggregates of one frame are made; copied once, and only if one is new.
 class Growth {
  public:
-  Growth(const Pipeline& authored, PipelineState& state) : authored_(authored), state_(state) {}
+  Growth(const Pipeline& pipeline, PipelineState& state) : pipeline_(pipeline), state_(state) {}
 
   /// The id of the aggregate of these layers, which is made if it has none.
   int id_of(const Members& members) {
-    const int serial = serial_of(authored_, state_.order.history, members);
+    const int serial = serial_of(pipeline_, state_.order.history, members);
     const int slot = slot_of(serial);
     state_.order.slots[slot].is_free = false;
-    const int id = authored_count(authored_) + slot;
+    const int id = authored_count(pipeline_) + slot;
     if (state_.order.slots[slot].serial != serial) make(id, slot, serial, members);
     return id;
   }
 
   void finish() {
-    if (layers_)
-      state_.order.grown =
-          std::make_shared<const GrownPipeline>(authored_, std::move(*layers_), std::move(bounds_));
+    if (table_) state_.layers = table_->finished();
   }
 
  private:
@@ -105,45 +119,34 @@ class Growth {
   }
 
   void make(int id, int slot, int serial, const Members& members) {
-    if (!layers_) {
-      const Pipeline& before = with_aggregates(authored_, state_);
-      layers_ = before.layers;
-      bounds_ = before.bounds;
-    }
-    Layer aggregate = layers::aggregate_of(authored_.layers.layers, members, id);
-    aggregate.name = state_.order.history.records[serial].name;
-    std::vector<const layers::LayerBound*> of_members;
-    for (const int member : members) of_members.push_back(&authored_.bounds[member]);
-    bounds_.put(id, following_light_and_faces(authored_, aggregate, layers::aggregate_bound(of_members)));
-    layers_->layers.resize(std::max(layers_->layers.size(), static_cast<std::size_t>(id) + 1));
-    layers_->layers[id] = std::move(aggregate);
+    if (!table_) table_.emplace(state_.layers);
+    table_->put_aggregate(pipeline_, members, id, state_.order.history.records[serial].name);
     state_.order.slots[slot].serial = serial;
-    state_.memory.resize(layers_->layers.size());
+    state_.memory.resize(std::max(state_.memory.size(), static_cast<std::size_t>(id) + 1));
     forget_captured(state_, id);
   }
 
-  const Pipeline& authored_;
+  const Pipeline& pipeline_;
   PipelineState& state_;
-  std::optional<layers::LayerSet> layers_;  ///< empty: nothing is new
-  BoundTable bounds_;
+  std::optional<GrowingTable> table_;  ///< empty: nothing is new
 };
 
-std::string names_of(const Pipeline& pipeline, const std::vector<int>& members, const char* between) {
+std::string names_of(const LayerTable& layers, const std::vector<int>& members, const char* between) {
   constexpr std::size_t kShown = 6;
   std::string text;
   for (std::size_t i = 0; i < members.size() && i < kShown; ++i)
-    text += (i > 0 ? between : "") + pipeline.layers.layers[members[i]].name;
+    text += (i > 0 ? between : "") + layers[members[i]].name;
   if (members.size() > kShown) text += " and " + std::to_string(members.size() - kShown) + " more";
   return text;
 }
 
-std::string why_merged(const Pipeline& pipeline, const MergedComponent& component) {
+std::string why_merged(const LayerTable& layers, const MergedComponent& component) {
   switch (component.reason) {
     case MergedComponent::Reason::Interpenetration:
-      return names_of(pipeline, component.cycle, " and ") + " occlude each other";
+      return names_of(layers, component.cycle, " and ") + " occlude each other";
     case MergedComponent::Reason::Cycle:
-      return "they occlude each other in a cycle (" + names_of(pipeline, component.cycle, " behind ") +
-             " behind " + pipeline.layers.layers[component.cycle.front()].name + ")";
+      return "they occlude each other in a cycle (" + names_of(layers, component.cycle, " behind ") +
+             " behind " + layers[component.cycle.front()].name + ")";
     case MergedComponent::Reason::Held:
       return "their cycle ended " + std::to_string(component.absent_frames) + " frames ago";
   }
@@ -153,15 +156,15 @@ std::string why_merged(const Pipeline& pipeline, const MergedComponent& componen
 // --- Ordering ---
 
 /// `with_bodies`: for the sort; the groups alone need none.
-std::vector<layers::Occluder> occluders_in_view(const Pipeline& authored,
+std::vector<layers::Occluder> occluders_in_view(const Pipeline& pipeline,
                                                 const std::vector<LayerState>& states, bool with_bodies) {
   std::vector<layers::Occluder> occluders;
-  for (const Layer& layer : authored.layers.layers) {
+  for (const Layer& layer : pipeline.authored) {
     const LayerState& state = states[layer.id];
     if (!state.touches_display || layer.base >= 0) continue;  // shade layers follow their bases
     occluders.push_back({layer.id, layer.group, {}});
     if (with_bodies)
-      occluders.back().bodies = layers::convex_bodies(authored.bounds[layer.id], state.world_points);
+      occluders.back().bodies = layers::convex_bodies(pipeline.authored.bound(layer.id), state.world_points);
   }
   return occluders;
 }
@@ -228,10 +231,10 @@ void take_from_merged(const MergedComponent& component, layers::VisibilityCounte
 
 /// Turns the sorter's answer into layers with sprites: a component becomes its aggregate, or stays apart with
 /// an expression or in some order.
-void place_groups(const Pipeline& authored, PipelineState& state, const std::vector<LayerState>& states,
+void place_groups(const Pipeline& pipeline, PipelineState& state, const std::vector<LayerState>& states,
                   const layers::dvec3& eye, const layers::VisibilityOrder& visibility, FrameOrder& order) {
   auto merged = visibility.merged.begin();
-  Growth growth(authored, state);
+  Growth growth(pipeline, state);
   for (const std::vector<int>& group : visibility.groups_back_to_front) {
     if (group.size() == 1) {
       order.back_to_front.push_back(group.front());
@@ -239,8 +242,8 @@ void place_groups(const Pipeline& authored, PipelineState& state, const std::vec
     }
     TALISMAN_CHECK(merged != visibility.merged.end() && merged->layers == group);
     const MergedComponent& component = *merged++;
-    Resolution resolution = resolve_cycle(authored, state.order.merged_into, component);
-    if (resolution.cycle || authored.settings.cycles == Cycles::Keep) {
+    Resolution resolution = resolve_cycle(pipeline, state.order.merged_into, component);
+    if (resolution.cycle || pipeline.settings.cycles == Cycles::Keep) {
       const std::vector<int> kept = order_of_cycle(component, eye, states);
       order.back_to_front.insert(order.back_to_front.end(), kept.begin(), kept.end());
       if (!resolution.cycle) continue;
@@ -251,36 +254,35 @@ void place_groups(const Pipeline& authored, PipelineState& state, const std::vec
     const int id = growth.id_of(group);
     order.back_to_front.push_back(id);
     const std::string why_not = resolution.why_not.empty() ? "" : "; " + resolution.why_not;
-    order.mergers.push_back({id, why_merged(authored, component) + why_not});
+    order.mergers.push_back({id, why_merged(pipeline.authored, component) + why_not});
     for (const int member : group) {
       order.merged_into[member] = id;
-      order.merged_parts += static_cast<int>(authored.layers.layers[member].parts.size());
+      order.merged_parts += static_cast<int>(pipeline.authored[member].parts.size());
     }
   }
   growth.finish();
 }
 
 /// Shade layers lie directly in front of their bases; an aggregate holds the terms of its members itself.
-void add_shade_layers(const Pipeline& authored, const PipelineState& state, FrameOrder& order) {
-  const std::vector<Layer>& all = with_aggregates(authored, state).layers.layers;
-  order.back_to_front = layers::with_shade_layers(all, order.back_to_front);
-  for (const Layer& layer : authored.layers.layers)
+void add_shade_layers(const Pipeline& pipeline, const PipelineState& state, FrameOrder& order) {
+  order.back_to_front = layers::with_shade_layers(state.layers.set().layers, order.back_to_front);
+  for (const Layer& layer : pipeline.authored)
     if (layer.base >= 0) order.merged_into[layer.id] = order.merged_into[layer.base];
 }
 
 // --- From frame to frame ---
 
 /// Notes which aggregates exist now and gives up those that are gone for long.
-void remember_order(const Pipeline& authored, PipelineState& state, int frame, const FrameOrder& order) {
+void remember_order(const Pipeline& pipeline, PipelineState& state, int frame, const FrameOrder& order) {
   OrderMemory& memory = state.order;
   if (memory.merged_into != order.merged_into) ++memory.generation;
   memory.merged_into = order.merged_into;
   memory.frame = frame;
   for (const Merger& merger : order.mergers)
-    memory.slots[merger.layer - authored_count(authored)].last_seen = frame;
+    memory.slots[merger.layer - authored_count(pipeline)].last_seen = frame;
   for (std::size_t k = 0; k < memory.slots.size(); ++k) {
     if (memory.slots[k].is_free || memory.slots[k].last_seen + kKeepAggregate_frames != frame) continue;
-    const int id = authored_count(authored) + static_cast<int>(k);
+    const int id = authored_count(pipeline) + static_cast<int>(k);
     memory.slots[k].is_free = true;
     state.memory[id] = {};
     state.sprites.drop(id);
@@ -306,42 +308,46 @@ const Merger* FrameOrder::merger(int layer) const {
   return nullptr;
 }
 
-const Pipeline& with_aggregates(const Pipeline& authored, const GrownPipeline* grown) {
-  return grown ? grown->pipeline : authored;
+void adopt_layers(const Pipeline& pipeline, PipelineState& state) {
+  if (state.authored.is_copy_of(pipeline.authored)) return;
+  TALISMAN_CHECK_EQ(state.authored.size(), pipeline.authored.size());  // a state of other layers
+  const LayerTable before = state.layers;
+  state.layers = state.authored = pipeline.authored;
+  if (before.size() == state.authored.size()) return;
+  GrowingTable table(pipeline.authored);
+  for (std::size_t id = state.authored.size(); id < before.size(); ++id)
+    table.put_aggregate(pipeline, before[id].members, before[id].id, before[id].name);
+  state.layers = table.finished();
 }
 
-const Pipeline& with_aggregates(const Pipeline& authored, const PipelineState& state) {
-  return with_aggregates(authored, state.order.grown.get());
-}
-
-bool exists_now(const Pipeline& pipeline, const PipelineState& state, int layer) {
-  const Layer& l = pipeline.layers.layers[layer];
+bool exists_now(const PipelineState& state, int layer) {
+  const Layer& l = state.layers[layer];
   if (!l.is_aggregate()) return true;
   const std::vector<int>& merged_into = state.order.merged_into;
   return merged_into[l.members.front()] == layer;
 }
 
-FrameOrder order_layers(const Pipeline& authored, PipelineState& state, int frame) {
+FrameOrder order_layers(const Pipeline& pipeline, PipelineState& state, int frame) {
   const Stopwatch watch;
   FrameOrder order;
-  order.merged_into.assign(authored.layers.layers.size(), -1);
-  const std::vector<LayerState>& states = captured_states(authored, state, frame);
-  const bool sorts = layers::is_built(layers::Effect::VisibilitySort) && authored.sorts_visibility &&
-                     authored.settings.regulator.policy != regulator::Policy::Direct;
-  const std::vector<layers::Occluder> occluders = occluders_in_view(authored, states, sorts);
+  order.merged_into.assign(pipeline.authored.size(), -1);
+  const std::vector<LayerState>& states = captured_states(pipeline, state, frame);
+  const bool sorts = layers::is_built(layers::Effect::VisibilitySort) && pipeline.sorts_visibility &&
+                     pipeline.settings.regulator.policy != regulator::Policy::Direct;
+  const std::vector<layers::Occluder> occluders = occluders_in_view(pipeline, states, sorts);
   if (!sorts) {
     order.back_to_front = by_group(occluders);
   } else {
     const layers::dvec3 eye(states.front().camera.world_from_camera[3]);
     const layers::VisibilityOrder visibility =
-        state.order.sorter.sort(eye, occluders, authored.settings.explicit_order);
+        state.order.sorter.sort(eye, occluders, pipeline.settings.explicit_order);
     order.sorted = true;
     order.counters = visibility.counters;
-    place_groups(authored, state, states, eye, visibility, order);
+    place_groups(pipeline, state, states, eye, visibility, order);
   }
-  add_shade_layers(authored, state, order);
+  add_shade_layers(pipeline, state, order);
   note_splits(state.order.merged_into, order);
-  remember_order(authored, state, frame, order);
+  remember_order(pipeline, state, frame, order);
   order.sort_ms = watch.ms();
   return order;
 }
@@ -361,9 +367,9 @@ std::vector<int> layers_with_lines(const PipelineState& state, const FrameReport
   return layers;
 }
 
-void explain_order(const Pipeline& pipeline, FrameReport& report) {
+void explain_order(FrameReport& report) {
   for (regulator::LayerDecision& decision : report.plan.decisions) {
-    const Layer& layer = pipeline.layers.layers[decision.layer];
+    const Layer& layer = report.layers[decision.layer];
     if (layer.is_aggregate()) {
       if (const Merger* merger = report.order.merger(layer.id))
         decision.reason += "; merged: " + merger->why;
@@ -374,11 +380,11 @@ void explain_order(const Pipeline& pipeline, FrameReport& report) {
     const int into = report.order.merged_into[layer.id], from = report.order.split_from[layer.id];
     if (into >= 0)
       decision.reason =
-          "merged into " + pipeline.layers.layers[into].name + ": " + report.order.merger(into)->why;
+          "merged into " + report.layers[into].name + ": " + report.order.merger(into)->why;
     else if (from >= 0 && decision.action != regulator::Action::Drop)
-      decision.reason = "split from " + pipeline.layers.layers[from].name + ": " + decision.reason;
+      decision.reason = "split from " + report.layers[from].name + ": " + decision.reason;
     if (const ResolvedCycle* cycle = report.order.resolved_with(layer.id))
-      decision.reason += "; " + why_resolved(pipeline, *cycle, layer.id);
+      decision.reason += "; " + why_resolved(report.layers, *cycle, layer.id);
   }
 }
 

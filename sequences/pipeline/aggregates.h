@@ -29,15 +29,16 @@ namespace talisman::sequences {
 /// keeps sprites of cycles that return, and their memory.
 inline constexpr int kKeepAggregate_frames = 48;
 
-/// `authored` with the aggregates that exist, or have lately; `authored` itself as long as there are none.
-const Pipeline& with_aggregates(const Pipeline& authored, const PipelineState& state);
-const Pipeline& with_aggregates(const Pipeline& authored, const GrownPipeline* grown);
+/// A state that was made for another pipeline takes over the layers of this one, which must be the same but
+/// for their bounds; aggregates are made anew. Nothing to do for its own.
+void adopt_layers(const Pipeline& pipeline, PipelineState& state);
 
 /// Does the aggregate (or any other layer) `layer` exist in the frame that was ordered last?
-bool exists_now(const Pipeline& pipeline, const PipelineState& state, int layer);
+bool exists_now(const PipelineState& state, int layer);
 
-/// The order of frame `frame`; merges and splits. Frames must come in order. Cost: layers/visibility.h.
-FrameOrder order_layers(const Pipeline& authored, PipelineState& state, int frame);
+/// The order of frame `frame`; merges and splits, so that `state.layers` may grow. Frames must come in order.
+/// Cost: layers/visibility.h.
+FrameOrder order_layers(const Pipeline& pipeline, PipelineState& state, int frame);
 
 /// The layers that have a line in decisions.jsonl for this frame, in their order: the author's by id, then
 /// the aggregates that exist by serial number.
@@ -47,6 +48,6 @@ std::vector<int> layers_with_lines(const PipelineState& state, const FrameReport
 int row_in_run(const PipelineState& state, int layer);
 
 /// Puts what was merged and split into the reasons of the plan.
-void explain_order(const Pipeline& pipeline, FrameReport& report);
+void explain_order(FrameReport& report);
 
 }  // namespace talisman::sequences

@@ -23,7 +23,7 @@ std::vector<DirectGroup> sprites_in_order(const Pipeline& pipeline, int frame) {
   PipelineState fresh(sorted);
   begin_frame(sorted, fresh, frame);
   const FrameOrder order = order_layers(sorted, fresh, frame);
-  const std::vector<Layer>& all = with_aggregates(sorted, fresh).layers.layers;
+  const LayerTable& all = fresh.layers;
   std::vector<DirectGroup> sprites;
   for (const int id : order.back_to_front) {
     const Layer& layer = all[id];
@@ -39,7 +39,7 @@ std::vector<DirectGroup> sprites_in_order(const Pipeline& pipeline, int frame) {
 std::vector<DirectGroup> direct_groups(const Pipeline& pipeline, int frame) {
   DirectGroup whole;
   bool faded = false;
-  for (const Layer& layer : pipeline.layers.layers) {
+  for (const Layer& layer : pipeline.authored) {
     if (!is_drawn_by_itself(layer)) continue;
     whole.layers.push_back(layer.id);
     faded = faded || multipliers_at(layer, time_of(pipeline, frame)).alpha < 1;

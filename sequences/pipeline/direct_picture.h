@@ -35,7 +35,7 @@ struct DirectGroup {
   bool operator==(const DirectGroup&) const = default;
 };
 
-/// Back to front. `pipeline` is the author's, without aggregates. Cost: that of a capture and a sort where a
+/// Back to front. Cost: that of a capture and a sort where a
 /// layer is faded, else nothing.
 std::vector<DirectGroup> direct_groups(const Pipeline& pipeline, int frame);
 
@@ -44,7 +44,7 @@ struct DirectPicture {
   chunker::RenderCounters render;
 };
 
-/// `drawing.frame` is the scene at `frame`.
+/// `drawing` is of the author's layers, and of the scene at `frame`.
 DirectPicture draw_directly(const Drawing& drawing, int frame);
 
 }  // namespace talisman::sequences

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What is known of one frame when it is done: its order, its plan, what was shown, what it took, and its picture.
+/// What is known of one frame when it is done: its order, its plan, what was shown, what it took, and its
+/// picture.
 
 #include <cstdint>
 #include <optional>
@@ -12,6 +13,7 @@
 #include "regulator/budget.h"
 #include "regulator/plan.h"
 #include "sequences/pipeline/frame_order.h"
+#include "sequences/pipeline/layer_table.h"
 #include "sequences/pipeline/shade_memory.h"
 #include "sequences/pipeline/sprite_compression.h"
 
@@ -38,6 +40,7 @@ struct ShownSprite {
 
 struct FrameReport {
   int frame = 0;
+  LayerTable layers;  ///< that the ids of this report mean
   FrameOrder order;
   regulator::FramePlan plan;
   std::vector<regulator::LayerAssessment>

@@ -5,9 +5,7 @@
 #include <cstdlib>
 
 #include "fiducials/fiducials.h"
-#include "layers/animation.h"
 #include "layers/built_effects.h"
-#include "layers/effects.h"
 #include "layers/predict.h"
 #include "layers/shade_state.h"
 #include "regulator/policies.h"
@@ -39,15 +37,15 @@ double own_resolution(const Layer& layer) {
 
 /// Extents grow by velocity × `expected_reuse`; `soon` is the state one frame later. `resolution` is
 /// relative to what the layer's author asks for.
-SpritePlacement place_layer(const Pipeline& pipeline, const LayerState& now, const LayerState& soon,
+SpritePlacement place_layer(const Pipeline& pipeline, const LayerTable& layers, const LayerState& now, const LayerState& soon,
                             double expected_reuse, double resolution = 1) {
-  const Layer& layer = pipeline.layers.layers[now.layer];
+  const Layer& layer = layers[now.layer];
   layers::ExtentOptions extents = pipeline.settings.extents;
   extents.expected_reuse_frames = expected_reuse * layer.preferences.share_of_expected_motion;
   layers::PlacementOptions placement = pipeline.settings.placement;
   placement.resolution_scale *= own_resolution(layer) * resolution;
-  if (is_blurred(layer.preferences)) apply_motion_blur(pipeline, now, placement);
-  return layers::place_sprite(now, soon, pipeline.bounds[layer.id].hull, extents, placement);
+  if (is_blurred(layer.preferences)) apply_motion_blur(pipeline, layers, now, placement);
+  return layers::place_sprite(now, soon, layers.bound(layer.id).hull, extents, placement);
 }
 
 /// The cost before the placement is known: the part of the layer's bounds that is on the display.
@@ -75,8 +73,8 @@ SpritePlacement place_regulated(const Pipeline& pipeline, PipelineState& state, 
                                 double resolution) {
   const LayerState& now = captured_states(pipeline, state, frame)[layer];
   const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
-  if (!(expected_reuse > 0)) return place_layer(pipeline, now, now, 0, resolution);
-  return place_layer(pipeline, now, captured_states(pipeline, state, frame + 1)[layer], expected_reuse,
+  if (!(expected_reuse > 0)) return place_layer(pipeline, state.layers, now, now, 0, resolution);
+  return place_layer(pipeline, state.layers, now, captured_states(pipeline, state, frame + 1)[layer], expected_reuse,
                      resolution);
 }
 
@@ -90,24 +88,6 @@ void see_through_resolution(LayerAssessment& assessment, double resolution) {
 }
 
 }  // namespace
-
-Pipeline::Pipeline(const layers::Scene& scene_in, const layers::LayerSet& layers_in,
-                   const Settings& settings_in)
-    : scene(scene_in), layers(layers_in), settings(settings_in) {
-  if (regulator::follows_light(settings.regulator)) moving_carriers = layers::moving_carriers(scene);
-  for (const Layer& layer : layers.layers)
-    bounds.put(layer.id, following_light_and_faces(*this, layer,
-                                                   layers::make_layer_bound(scene, layer, settings.bound)));
-  sorts_visibility = layers::calls_for_visibility_sort(layers.layers);
-}
-
-Pipeline::Pipeline(const Pipeline& authored, const layers::LayerSet& layers_in, BoundTable bounds_in)
-    : scene(authored.scene),
-      layers(layers_in),
-      settings(authored.settings),
-      bounds(std::move(bounds_in)),
-      moving_carriers(authored.moving_carriers),
-      sorts_visibility(authored.sorts_visibility) {}
 
 bool looks_ahead(const Pipeline& pipeline) {
   const Policy policy = pipeline.settings.regulator.policy;
@@ -163,6 +143,7 @@ SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, 
 }  // namespace
 
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
+  adopt_layers(pipeline, state);
   const Policy policy = pipeline.settings.regulator.policy;
   auto& captured = state.captured;
   if (state.planned_with != pipeline.settings.regulator || predicts(pipeline))
@@ -179,18 +160,17 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
   if (policy != Policy::Lookahead) forget(state, captured.upper_bound(frame + 1), captured.end());
 }
 
-const std::vector<LayerState>& captured_states(const Pipeline& authored, PipelineState& state, int frame) {
+const std::vector<LayerState>& captured_states(const Pipeline& pipeline, PipelineState& state, int frame) {
   CapturedFrame& captured = captured_frame(state, frame);
   if (captured.generation == state.order.generation) return captured.states;
-  const Pipeline& pipeline = with_aggregates(authored, state);
   captured.generation = state.order.generation;
-  captured.states.resize(pipeline.layers.layers.size());
+  captured.states.resize(state.layers.size());
   captured.placements.resize(captured.states.size());
   std::optional<layers::SceneFrame> scene_frame;  // evaluated only if something is missing
   std::optional<layers::FrameCapture> capture;
-  for (const Layer& layer : pipeline.layers.layers) {
+  for (const Layer& layer : state.layers) {
     LayerState& layer_state = captured.states[layer.id];
-    if (layer_state.layer == layer.id || !exists_now(pipeline, state, layer.id)) continue;
+    if (layer_state.layer == layer.id || !exists_now(state, layer.id)) continue;
     if (!scene_frame) {
       scene_frame = scene_as_known(pipeline, state, frame);
       capture.emplace(*scene_frame, pipeline.settings.view);
@@ -198,11 +178,11 @@ const std::vector<LayerState>& captured_states(const Pipeline& authored, Pipelin
     if (layer.base >= 0)
       layer_state = layers::shade_state(captured.states[layer.base], layer);
     else
-      capture->capture(layer, pipeline.bounds[layer.id], layer_state);
+      capture->capture(layer, state.layers.bound(layer.id), layer_state);
   }
   if (!scene_frame) return captured.states;
-  layers::capture_influences(*scene_frame, pipeline.layers, captured.states);
-  captured.shadow_maps = shadow_map_keys(pipeline.scene, pipeline.layers, *scene_frame);
+  layers::capture_influences(*scene_frame, state.layers.set(), captured.states);
+  captured.shadow_maps = shadow_map_keys(pipeline.scene, state.layers.set(), *scene_frame);
   return captured.states;
 }
 
@@ -221,12 +201,12 @@ void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
     if (!layer.in_view || layer.resolution == 1) continue;
     std::optional<SpritePlacement>& placement = state.captured.at(frame).placements[layer.layer];
     placement = place_regulated(pipeline, state, layer.layer, frame, layer.resolution);
-    layer.cost = cost_of(pipeline.layers.layers[layer.layer], placement->size_px);
+    layer.cost = cost_of(state.layers[layer.layer], placement->size_px);
   }
 }
 
-SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerState& now) {
-  return place_layer(pipeline, now, now, 0);
+SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTable& layers, const LayerState& now) {
+  return place_layer(pipeline, layers, now, now, 0);
 }
 
 regulator::LayerCost cost_of(const Layer& layer, layers::ivec2 size_px) {
@@ -240,16 +220,16 @@ regulator::LayerCost cost_of(const Layer& layer, layers::ivec2 size_px) {
   return cost;
 }
 
-LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
+LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers, const LayerState& then,
                               const SpritePlacement& placement, const LayerState& now,
                               int frames_since_render) {
   LayerAssessment assessment;
   assessment.layer = now.layer;
-  assessment.preferences = pipeline.layers.layers[now.layer].preferences;
+  assessment.preferences = layers[now.layer].preferences;
   assessment.in_view = assessment.has_sprite = true;
   assessment.frames_since_render = frames_since_render;
   assessment.identical = now.same_pixels(then);
-  const layers::Correspondences matched = layers::correspond(then, now, pipeline.bounds[now.layer].hull);
+  const layers::Correspondences matched = layers::correspond(then, now, layers.bound(now.layer).hull);
   // An empty sprite holds nothing of what is in view now, wherever its points went.
   const bool shows_something = matched.overlap && !placement.empty();
   assessment.matched_points = shows_something ? static_cast<int>(matched.then_px.size()) : 0;
@@ -258,8 +238,8 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
   else
     assessment.fitted = warp::fit(then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
   assessment.fiducials = fiducials::assess(then, now, placement, matched, assessment.fitted);
-  if (is_blurred(assessment.preferences)) judge_motion_blur(pipeline, then, now, assessment);
-  assess_light_and_faces(pipeline, then, now, assessment.fiducials);
+  if (is_blurred(assessment.preferences)) judge_motion_blur(pipeline, layers, then, now, assessment);
+  assess_light_and_faces(pipeline, layers.bound(now.layer), then, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));
@@ -268,13 +248,13 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerState& then,
 }
 
 LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int layer_id, int frame) {
-  const Layer& layer = pipeline.layers.layers[layer_id];
+  const Layer& layer = state.layers[layer_id];
   const LayerMemory& memory = state.memory[layer_id];
   const LayerState& now = captured_states(pipeline, state, frame)[layer_id];
   LayerAssessment assessment;
   if (now.touches_display && memory.then)
     assessment =
-        assess_sprite(pipeline, *memory.then, memory.placement, now, std::abs(frame - memory.frame_rendered));
+        assess_sprite(pipeline, state.layers, *memory.then, memory.placement, now, std::abs(frame - memory.frame_rendered));
   assessment.layer = layer.id;
   assessment.frames_short_of_area = memory.frames_short_of_area;
   see_through_resolution(assessment, memory.resolution);

@@ -23,13 +23,13 @@ double time_of(const Pipeline& pipeline, int frame);
 layers::SceneFrame scene_at(const Pipeline& pipeline, int frame);
 layers::SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame);
 
-/// Makes `frame` the frame that is planned: forgets what is past, what was only expected, and what was
+/// Makes `frame` the frame that is planned, under this pipeline: forgets what is past, what was only expected, and what was
 /// judged under other options.
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame);
 
 /// The states of all layers at `frame`, by layer id; captured once and kept in `state` (a frame ahead that
-/// was looked at is not captured again when it comes). Aggregates (sequences/pipeline/aggregates.h) are captured if
-/// they exist in the frame that was ordered last. The reference holds until aggregates are made.
+/// was looked at is not captured again when it comes). Aggregates (sequences/pipeline/aggregates.h) are
+/// captured if they exist in the frame that was ordered last. The reference holds until aggregates are made.
 const std::vector<layers::LayerState>& captured_states(const Pipeline& pipeline, PipelineState& state,
                                                        int frame);
 
@@ -44,12 +44,12 @@ void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
                      std::vector<regulator::LayerAssessment>& assessments);
 
 /// The same without growth: as the policy `reference` draws it.
-layers::SpritePlacement placement_without_growth(const Pipeline& pipeline, const layers::LayerState& now);
+layers::SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now);
 
 regulator::LayerCost cost_of(const layers::Layer& layer, layers::ivec2 size_px);
 
 /// What showing at `now` the sprite as rendered at `then` with `placement` is worth. The layer is in view.
-regulator::LayerAssessment assess_sprite(const Pipeline& pipeline, const layers::LayerState& then,
+regulator::LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& then,
                                          const layers::SpritePlacement& placement,
                                          const layers::LayerState& now, int frames_since_render);
 

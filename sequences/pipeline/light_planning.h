@@ -17,8 +17,8 @@ namespace talisman::sequences {
 layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const layers::Layer& layer,
                                              layers::LayerBound bound);
 
-/// Fills in Report::photometric, with the names of the lights, and Report::turned.
-void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerState& then,
+/// Fills in Report::photometric, with the names of the lights, and Report::turned. `bound` is the layer's.
+void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerBound& bound, const layers::LayerState& then,
                             const layers::LayerState& now, fiducials::Report& report);
 
 }  // namespace talisman::sequences

@@ -21,9 +21,9 @@ layers::dvec2 mean_motion(const layers::Correspondences& matched) {
 
 }  // namespace
 
-MotionSampling motion_sampling(const Pipeline& pipeline, const layers::LayerState& now) {
-  const layers::Layer& layer = pipeline.layers.layers[now.layer];
-  const layers::LayerBound& bound = pipeline.bounds[now.layer];
+MotionSampling motion_sampling(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now) {
+  const layers::Layer& layer = layers[now.layer];
+  const layers::LayerBound& bound = layers.bound(now.layer);
   const int next = static_cast<int>(std::lround(now.time_s * pipeline.settings.fps)) + 1;
   const layers::LayerState soon =
       layers::capture(pipeline.scene.at(time_of(pipeline, next)), layer, bound, pipeline.settings.view);
@@ -36,16 +36,16 @@ MotionSampling motion_sampling(const Pipeline& pipeline, const layers::LayerStat
   return sampling;
 }
 
-void apply_motion_blur(const Pipeline& pipeline, const layers::LayerState& now,
+void apply_motion_blur(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now,
                        layers::PlacementOptions& placement) {
-  const MotionSampling sampling = motion_sampling(pipeline, now);
+  const MotionSampling sampling = motion_sampling(pipeline, layers, now);
   placement.motion = sampling.motion_px;
   placement.motion_density = sampling.density;
 }
 
-void judge_motion_blur(const Pipeline& pipeline, const layers::LayerState& then,
+void judge_motion_blur(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& then,
                        const layers::LayerState& now, regulator::LayerAssessment& assessment) {
-  const MotionSampling before = motion_sampling(pipeline, then), wanted = motion_sampling(pipeline, now);
+  const MotionSampling before = motion_sampling(pipeline, layers, then), wanted = motion_sampling(pipeline, layers, now);
   const bool same_blur =
       before.density == wanted.density && (wanted.density == 1 || before.motion_px == wanted.motion_px);
   assessment.identical = assessment.identical && same_blur;

@@ -21,16 +21,16 @@ struct MotionSampling {
 };
 
 /// Cost: the capture of the layer one frame later (some µs, scene.at included).
-MotionSampling motion_sampling(const Pipeline& pipeline, const layers::LayerState& now);
+MotionSampling motion_sampling(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now);
 
 /// Adds the blur of the layer at `now` to the options of its placement.
-void apply_motion_blur(const Pipeline& pipeline, const layers::LayerState& now,
+void apply_motion_blur(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now,
                        layers::PlacementOptions& placement);
 
 /// A sprite of `then` has another blur than one of `now` would have. It is then not identical, and the ratio
 /// of the two densities counts as magnification (a blur that has ended) or minification (one that is
 /// missing).
-void judge_motion_blur(const Pipeline& pipeline, const layers::LayerState& then,
+void judge_motion_blur(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& then,
                        const layers::LayerState& now, regulator::LayerAssessment& assessment);
 
 }  // namespace talisman::sequences

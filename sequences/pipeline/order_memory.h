@@ -1,21 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What is remembered of the visibility order from frame to frame: which layers are merged, and the aggregates
-/// that a run has made. Data; how it is used is in sequences/pipeline/aggregates.h.
+/// What is remembered of the visibility order from frame to frame: which layers are merged, and the
+/// aggregates that a run has made. Data; how it is used is in sequences/pipeline/aggregates.h.
 
 #include <map>
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "layers/visibility.h"
 
 namespace talisman::sequences {
-
-/// The pipeline with the aggregates behind the author's layers. Never changed, so that copies of a state can
-/// share it.
-struct GrownPipeline;
 
 /// An aggregate of this run, existing or not: a line of its summary.
 struct AggregateRecord {
@@ -40,7 +35,6 @@ struct AggregateSlot {
 /// What is remembered of the order from frame to frame. A value.
 struct OrderMemory {
   layers::VisibilitySorter sorter;
-  std::shared_ptr<const GrownPipeline> grown;  ///< null: no aggregate was made yet
   std::vector<int> merged_into;                ///< of the last frame, by layer id
   std::vector<AggregateSlot> slots;            ///< by id, from the first behind the author's layers
   AggregateHistory history;

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What does a run consist of? Its options, what does not change while it lasts, and all that survives a frame.
-/// Data only, below the stages that read and write it; how a frame comes about is in sequences/pipeline/step.h.
+/// What does a run consist of? Its options, what does not change while it lasts, and all that survives a
+/// frame. Data only, below the stages that read and write it; how a frame comes about is in
+/// sequences/pipeline/step.h.
 
 #include <map>
 #include <optional>
@@ -10,12 +11,11 @@
 
 #include "chunker/render.h"
 #include "layers/layer.h"
-#include "layers/polyhedron.h"
 #include "layers/sprite_transform.h"
 #include "layers/state.h"
 #include "regulator/plan.h"
-#include "sequences/pipeline/bound_table.h"
 #include "sequences/pipeline/frame_order.h"
+#include "sequences/pipeline/layer_table.h"
 #include "sequences/pipeline/order_memory.h"
 #include "sequences/pipeline/shade_memory.h"
 #include "sequences/pipeline/sprite_compression.h"
@@ -43,15 +43,12 @@ struct Settings {
                             ///< costs up to some ms a frame, and changes no decision
 };
 
-/// What does not change during a run. Keeps references.
+/// What does not change during a run. Made by make_pipeline (sequences/pipeline/make_pipeline.h). It refers to
+/// the scene, which must outlive it; all else is its own.
 struct Pipeline {
-  Pipeline(const layers::Scene& scene, const layers::LayerSet& layers, const Settings& settings);
-  /// The same with more layers behind those of `authored`: aggregates.
-  Pipeline(const Pipeline& authored, const layers::LayerSet& layers, BoundTable bounds);
   const layers::Scene& scene;
-  const layers::LayerSet& layers;
   Settings settings;
-  BoundTable bounds;                 ///< one per layer
+  LayerTable authored;               ///< the author's layers; those of a frame are in its state
   std::vector<int> moving_carriers;  ///< by node (layers/animation.h); empty unless light is followed
   bool sorts_visibility = false;     ///< the effect visibility_sort is called for
 };
@@ -85,7 +82,10 @@ struct MotionKnown {
 
 /// All that survives a frame.
 struct PipelineState {
-  explicit PipelineState(const Pipeline& pipeline) : memory(pipeline.layers.layers.size()) {}
+  explicit PipelineState(const Pipeline& pipeline)
+      : authored(pipeline.authored), layers(authored), memory(layers.size()) {}
+  LayerTable authored;              ///< of the pipeline for which `layers` was made
+  LayerTable layers;                ///< those, and behind them the aggregates that exist or have lately
   std::vector<LayerMemory> memory;  ///< by layer id, aggregates behind the author's layers
   chunker::SpriteStore sprites;     ///< as the compositor shows them: decompressed if they are compressed
   CompressedSprites compressed;     ///< empty unless Settings::compression asks for it

@@ -15,9 +15,9 @@ bool contains(const std::vector<int>& layers, int layer) {
 }
 
 /// The first member that has shade layers; null: none has.
-const layers::Layer* first_with_shade_layers(const Pipeline& authored, const std::vector<int>& members) {
-  for (const layers::Layer& layer : authored.layers.layers)
-    if (layer.base >= 0 && contains(members, layer.base)) return &authored.layers.layers[layer.base];
+const layers::Layer* first_with_shade_layers(const LayerTable& authored, const std::vector<int>& members) {
+  for (const layers::Layer& layer : authored)
+    if (layer.base >= 0 && contains(members, layer.base)) return &authored[layer.base];
   return nullptr;
 }
 
@@ -29,26 +29,26 @@ bool any_merged(const std::vector<int>& merged_before, const std::vector<int>& m
 
 }  // namespace
 
-Resolution resolve_cycle(const Pipeline& authored, const std::vector<int>& merged_before,
+Resolution resolve_cycle(const Pipeline& pipeline, const std::vector<int>& merged_before,
                          const MergedComponent& component) {
-  if (authored.settings.compositor == Compositor::Talisman) return {};
+  if (pipeline.settings.compositor == Compositor::Talisman) return {};
   if (component.reason == MergedComponent::Reason::Interpenetration) return {};
   if (component.reason == MergedComponent::Reason::Held && any_merged(merged_before, component.layers))
     return {};
-  if (const layers::Layer* shaded = first_with_shade_layers(authored, component.layers))
+  if (const layers::Layer* shaded = first_with_shade_layers(pipeline.authored, component.layers))
     return {std::nullopt, shaded->name + " has shade layers, so no expression is used"};
   CompositeExpression expression = layers::occlusion_expression(component);
   if (expression.status != CompositeExpression::Status::Resolved) return {};
   return {ResolvedCycle{component.layers, std::move(expression)}, {}};
 }
 
-std::string why_resolved(const Pipeline& pipeline, const ResolvedCycle& cycle, int layer) {
+std::string why_resolved(const LayerTable& layers, const ResolvedCycle& cycle, int layer) {
   constexpr int kShown = 6;
   std::string others;
   int count = 0;
   for (const int other : cycle.layers) {
     if (other == layer || ++count > kShown) continue;
-    others += (others.empty() ? "" : ", ") + pipeline.layers.layers[other].name;
+    others += (others.empty() ? "" : ", ") + layers[other].name;
   }
   if (count > kShown) others += " and " + std::to_string(count - kShown) + " more";
   return "in a cycle with " + others + ": composited by an expression";

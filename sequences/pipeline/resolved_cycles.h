@@ -39,10 +39,10 @@ struct Resolution {
 
 /// `merged_before`: by layer id, the aggregate that drew the layer in the last frame, -1: none; empty in the
 /// first frame.
-Resolution resolve_cycle(const Pipeline& authored, const std::vector<int>& merged_before,
+Resolution resolve_cycle(const Pipeline& pipeline, const std::vector<int>& merged_before,
                          const layers::MergedComponent& component);
 
 /// "in a cycle with a, b: composited by an expression"
-std::string why_resolved(const Pipeline& pipeline, const ResolvedCycle& cycle, int layer);
+std::string why_resolved(const LayerTable& layers, const ResolvedCycle& cycle, int layer);
 
 }  // namespace talisman::sequences

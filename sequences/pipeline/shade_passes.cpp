@@ -54,11 +54,11 @@ ShadeTerm term_of(const Layer& layer) {
 std::vector<const chunker::ShadowMap*> maps_for(const Drawing& drawing, const std::vector<int>& lights) {
   std::vector<const chunker::ShadowMap*> by_light;
   if (lights.empty()) return by_light;
-  const auto& [pipeline, maps, prepared, frame] = drawing;
-  const std::vector<ShadowMapKey> keys = shadow_map_keys(pipeline.scene, pipeline.layers, frame);
+  const auto& [pipeline, layers, maps, prepared, frame] = drawing;
+  const std::vector<ShadowMapKey> keys = shadow_map_keys(pipeline.scene, layers.set(), frame);
   by_light.resize(keys.size(), nullptr);
   for (const int light : lights)
-    by_light[light] = maps.find(pipeline.scene, pipeline.layers, frame, light, keys[light]);
+    by_light[light] = maps.find(pipeline.scene, layers.set(), frame, light, keys[light]);
   return by_light;
 }
 
@@ -81,8 +81,8 @@ std::vector<int> parts_before(const Drawing& drawing, const Layer& layer, const 
   const double eye = mirror.height(dvec3(drawing.frame.camera.world_from_camera[3]));
   std::vector<int> parts;
   for (const int id : layer.reflected) {
-    const Layer& seen = drawing.pipeline.layers.layers[id];
-    const auto points = layers::world_points(drawing.frame, seen, drawing.pipeline.bounds[id]);
+    const Layer& seen = drawing.layers[id];
+    const auto points = layers::world_points(drawing.frame, seen, drawing.layers.bound(id));
     if (std::any_of(points.begin(), points.end(), [&](const dvec3& p) { return mirror.height(p) * eye > 0; }))
       parts.insert(parts.end(), seen.parts.begin(), seen.parts.end());
   }
@@ -113,7 +113,7 @@ struct Mirrored {
 };
 
 Mirrored draw_mirrored(const Drawing& drawing, const Layer& layer, const SpritePlacement& placement) {
-  const auto& [pipeline, maps, prepared, frame] = drawing;
+  const auto& [pipeline, layers, maps, prepared, frame] = drawing;
   Mirrored mirrored;
   const WorldPlane mirror = mirror_of(frame, layer);
   if (placement.empty() || !std::isfinite(mirror.height({0, 0, 0}))) return mirrored;
@@ -122,7 +122,7 @@ Mirrored draw_mirrored(const Drawing& drawing, const Layer& layer, const SpriteP
   if (!picture_from_screen) return mirrored;
   ShadeInputs inputs;
   const auto by_light = maps_for(
-      drawing, any_shadows(pipeline.layers) ? lights_with_maps(pipeline.scene, -1) : std::vector<int>{});
+      drawing, any_shadows(layers.set()) ? lights_with_maps(pipeline.scene, -1) : std::vector<int>{});
   inputs.shadow_maps = by_light;
   inputs.kept = chunker::before_mirror(frame, mirror.point, mirror.normal);
   mirrored.picture = chunker::render(prepared, chunker::mirrored_frame(frame, mirror.point, mirror.normal),
@@ -228,13 +228,13 @@ chunker::RenderResult draw(const Drawing& drawing, const Contents& contents,
 
 chunker::RenderResult draw_layer(const Drawing& drawing, const Layer& layer,
                                  const SpritePlacement& placement) {
-  return draw(drawing, contents_of(drawing.pipeline.layers, layer, drawing.frame.time_s), placement);
+  return draw(drawing, contents_of(drawing.layers.set(), layer, drawing.frame.time_s), placement);
 }
 
 chunker::LinearImage draw_layer_linear(const Drawing& drawing, const Layer& layer,
                                        const SpritePlacement& placement) {
   const Settings& settings = drawing.pipeline.settings;
-  const Contents contents = contents_of(drawing.pipeline.layers, layer, drawing.frame.time_s);
+  const Contents contents = contents_of(drawing.layers.set(), layer, drawing.frame.time_s);
   const LookedUp looked_up(drawing, contents, placement);
   return chunker::render_linear(drawing.prepared, drawing.frame, contents.parts, settings.view.display_px,
                                 placement, settings.render, looked_up.inputs());
@@ -243,7 +243,7 @@ chunker::LinearImage draw_layer_linear(const Drawing& drawing, const Layer& laye
 std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const Layer& layer,
                                            const SpritePlacement& placement, chunker::BasePasses base) {
   const Settings& settings = drawing.pipeline.settings;
-  const Contents contents = contents_of(drawing.pipeline.layers, layer, drawing.frame.time_s);
+  const Contents contents = contents_of(drawing.layers.set(), layer, drawing.frame.time_s);
   const LookedUp looked_up(drawing, contents, placement);
   return chunker::render_terms(drawing.prepared, drawing.frame, contents.parts, settings.view.display_px,
                                placement, settings.render, looked_up.inputs(), base);
@@ -251,7 +251,7 @@ std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const Layer& 
 
 chunker::RenderResult draw_in_one_pass(const Drawing& drawing, std::span<const int> geometry_layers,
                                        const SpritePlacement& placement) {
-  return draw(drawing, all_terms_of(drawing.pipeline.layers, geometry_layers, drawing.frame.time_s),
+  return draw(drawing, all_terms_of(drawing.layers.set(), geometry_layers, drawing.frame.time_s),
               placement);
 }
 

@@ -23,10 +23,11 @@
 
 namespace talisman::sequences {
 
-/// What drawing reads besides what is drawn: the run, the scene at an instant, its meshes and textures as the
-/// renderer takes them, and the shadow maps at hand, which it may draw anew. Keeps references.
+/// What drawing reads besides what is drawn: the run and its layers, the scene at an instant, its meshes and
+/// textures as the renderer takes them, and the shadow maps at hand, which it may draw anew. Keeps references.
 struct Drawing {
   const Pipeline& pipeline;
+  const LayerTable& layers;
   ShadowMapStore& maps;
   const chunker::PreparedScene& prepared;
   const layers::SceneFrame& frame;

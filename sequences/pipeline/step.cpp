@@ -27,13 +27,13 @@ using regulator::Action;
 using regulator::LayerAssessment;
 
 /// What the policy `reference` would render for this frame: every layer in view, without growth.
-std::int64_t reference_pixels(const Pipeline& pipeline, const std::vector<LayerState>& states,
-                              const FrameOrder& order) {
+std::int64_t reference_pixels(const Pipeline& pipeline, const FrameReport& report,
+                              const std::vector<LayerState>& states) {
   std::int64_t pixels = 0;
-  for (const int layer : order.back_to_front)
-    pixels +=
-        cost_of(pipeline.layers.layers[layer], placement_without_growth(pipeline, states[layer]).size_px)
-            .pixels;
+  for (const int layer : report.order.back_to_front)
+    pixels += cost_of(report.layers[layer],
+                      placement_without_growth(pipeline, report.layers, states[layer]).size_px)
+                  .pixels;
   return pixels;
 }
 
@@ -69,7 +69,7 @@ int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
   if (predicts(pipeline)) decision.reason += " if the motion goes on";
   if (run.instant == frame) return frame;
   const LayerAssessment shown =
-      assess_sprite(pipeline, captured_states(pipeline, state, run.instant)[decision.layer],
+      assess_sprite(pipeline, state.layers, captured_states(pipeline, state, run.instant)[decision.layer],
                     captured_placement(pipeline, state, decision.layer, run.instant),
                     captured_states(pipeline, state, frame)[decision.layer], 0);
   decision.shown_warp = shown.fitted.warp;
@@ -95,9 +95,9 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
       memory.resolution = decision.resolution;
       memory.predicted = predicts(pipeline);
       memory.frames_short_of_area = 0;
-      const Layer& layer = pipeline.layers.layers[decision.layer];
+      const Layer& layer = state.layers[decision.layer];
       decision.cost = cost_of(layer, memory.placement.size_px);
-      state.shade_plan.add_render(pipeline.scene, pipeline.layers, layer,
+      state.shade_plan.add_render(pipeline.scene, state.layers.set(), layer,
                                   state.captured.at(instant).shadow_maps, report.shade);
     }
     memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
@@ -115,7 +115,7 @@ std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineS
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
     SpriteMultipliers multipliers =
-        multipliers_at(pipeline.layers.layers[layer], time_of(pipeline, report.frame));
+        multipliers_at(report.layers[layer], time_of(pipeline, report.frame));
     if constexpr (layers::is_built(layers::Effect::ColorWarp))
       multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
@@ -143,8 +143,8 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
     if (!as_of_now && others.count(key) == 0)
       others.emplace(key, scene_expected(pipeline, key.first, instant));
     chunker::RenderResult result =
-        draw_layer({pipeline, state.shadow_maps, prepared, as_of_now ? now : others.at(key)},
-                   pipeline.layers.layers[sprite.layer], memory.placement);
+        draw_layer({pipeline, state.layers, state.shadow_maps, prepared, as_of_now ? now : others.at(key)},
+                   state.layers[sprite.layer], memory.placement);
     const bool is_late = memory.frame_rendered != report.frame;
     if (const chunker::CompressionOptions* compression = compression_of(pipeline))
       keep_compressed(sprite.layer, result.sprite, *compression, state.compressed, state.sprites,
@@ -193,12 +193,12 @@ chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& 
   return model_chunk_reads(placed, pipeline.settings.view.display_px);
 }
 
-void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
+void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
           const chunker::PreparedScene& prepared, FrameReport& report) {
   chunker::CompositeResult result;
   const Stopwatch render_watch;
   if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
-    DirectPicture picture = draw_directly({authored, state.shadow_maps, prepared, now}, report.frame);
+    DirectPicture picture = draw_directly({pipeline, pipeline.authored, state.shadow_maps, prepared, now}, report.frame);
     result = std::move(picture.composite);
     report.render += picture.render;
     report.times.render_ms = render_watch.ms();
@@ -218,20 +218,19 @@ void draw(const Pipeline& authored, const Pipeline& pipeline, PipelineState& sta
 
 }  // namespace
 
-FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
+FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared) {
-  TALISMAN_CHECK_EQ(state.memory.size(), with_aggregates(authored, state).layers.layers.size());
   FrameReport report;
   report.frame = frame;
 
   // Decide: no pixel is touched up to and including the plan.
   const Stopwatch plan_watch;
-  begin_frame(authored, state, frame);
-  report.order = order_layers(authored, state, frame);  // may merge layers into aggregates
-  const Pipeline& pipeline = with_aggregates(authored, state);
-  report.render_by_layer.resize(pipeline.layers.layers.size());
-  report.assessments.reserve(pipeline.layers.layers.size());
-  for (const Layer& layer : pipeline.layers.layers) {
+  begin_frame(pipeline, state, frame);
+  report.order = order_layers(pipeline, state, frame);  // may merge layers into aggregates
+  report.layers = state.layers;
+  report.render_by_layer.resize(report.layers.size());
+  report.assessments.reserve(report.layers.size());
+  for (const Layer& layer : report.layers) {
     report.assessments.push_back(assess(pipeline, state, layer, report));
     report.layers_assessed += report.assessments.back().in_view && report.assessments.back().has_sprite;
   }
@@ -239,23 +238,23 @@ FrameReport step(const Pipeline& authored, PipelineState& state, int frame,
     fit_resolutions(pipeline, state, frame, report.assessments);
   report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
   double bookkeeping_ms = plan_watch.ms();
-  report.pixels_reference = reference_pixels(pipeline, captured_states(pipeline, state, frame), report.order);
+  report.pixels_reference = reference_pixels(pipeline, report, captured_states(pipeline, state, frame));
   if (pipeline.settings.budget_gap) report.budget_gap = gap_of(pipeline, report);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);
-  explain_order(pipeline, report);
+  explain_order(report);
   report.shown = sprites_shown(pipeline, state, report);
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.
-  if (prepared) draw(authored, pipeline, state, scene_at(pipeline, frame), *prepared, report);
+  if (prepared) draw(pipeline, state, scene_at(pipeline, frame), *prepared, report);
   return report;
 }
 
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
   ShadowMapStore maps;
   const SceneFrame now = scene_at(pipeline, frame);
-  return draw_directly({pipeline, maps, prepared, now}, frame).composite.frame;
+  return draw_directly({pipeline, pipeline.authored, maps, prepared, now}, frame).composite.frame;
 }
 
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {

@@ -12,13 +12,14 @@
 /// --frames and --resume: any frame of a sequence comes out with the same bytes, however it is reached.
 
 #include "sequences/pipeline/frame_report.h"
+#include "sequences/pipeline/make_pipeline.h"
 #include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 
 /// Plans frame `frame` and, if `prepared` is given, draws it. Frames come in order from 0; a frame may be
 /// repeated, and (with policies that do not look ahead) frames may run backwards. The same `state` may be
-/// carried on under other settings: sprites and what is known of them stay, what was planned ahead is planned
+/// carried on under a pipeline of other settings: sprites and what is known of them stay, what was planned ahead is planned
 /// anew.
 FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared);

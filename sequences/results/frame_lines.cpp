@@ -169,7 +169,7 @@ std::string hash_of(const chunker::Frame& picture) {
   return text;
 }
 
-FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
+FrameLine line_of(const FrameReport& report) {
   FrameLine line;
   line.frame = report.frame;
   line.layers_assessed = report.layers_assessed;
@@ -180,7 +180,7 @@ FrameLine line_of(const Pipeline& pipeline, const FrameReport& report) {
     line.pixels_rendered += d.cost.pixels;
     if (d.action == regulator::Action::Drop) continue;
     ++line.layers_in_view;
-    line.polygons_reference += pipeline.layers.layers[d.layer].polygons;
+    line.polygons_reference += report.layers[d.layer].polygons;
   }
   line.shadow_maps_drawn = report.shade.shadow_maps_drawn;
   line.shadow_maps_reused = report.shade.shadow_maps_reused;
@@ -261,11 +261,11 @@ std::optional<FrameLine> frame_line_from_json(const std::string& text) try {
   return std::nullopt;
 }
 
-std::string json_of(const Pipeline& pipeline, const FrameReport& report, const regulator::LayerDecision& d) {
+std::string json_of(const FrameReport& report, const regulator::LayerDecision& d) {
   const Json json = {
       {"schema", "talisman.decision/1"},
       {"frame", report.frame},
-      {"layer", pipeline.layers.layers[d.layer].name},
+      {"layer", report.layers[d.layer].name},
       {"decision", regulator::name(d.action)},
       {"reason", d.reason},
       {"warp", json_of(d.shown_warp)},
@@ -312,14 +312,14 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   if (settings.compositor == Compositor::Extended) summary.compositor = "extended";
   summary.display_px = settings.view.display_px;
   if (settings.compression) summary.compression_quality = settings.compression->quality;
-  summary.effects = layers::effects_called_for(pipeline.scene, pipeline.layers.layers, run_effects(settings));
+  summary.effects = layers::effects_called_for(pipeline.scene, pipeline.authored.set().layers, run_effects(settings));
   summary.effect_passes.assign(summary.effects.size(), 0);
-  for (const layers::Layer& layer : pipeline.layers.layers)
+  for (const layers::Layer& layer : pipeline.authored)
     summary.layers.push_back(row_of(layer.name, static_cast<int>(layer.parts.size()), layer.polygons, false));
   return summary;
 }
 
-void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport& report,
+void add_decisions(Summary& summary, const FrameReport& report,
                    const PipelineState& state) {
   const std::size_t authored = report.order.merged_into.size();
   const std::vector<AggregateRecord>& aggregates = state.order.history.records;
@@ -343,7 +343,7 @@ void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport
     const layers::ivec2 size = state.memory[d.layer].placement.size_px;
     if (std::int64_t{size.x} * size.y > std::int64_t{layer.sprite_px.x} * layer.sprite_px.y)
       layer.sprite_px = size;
-    const layers::Layer& drawn = pipeline.layers.layers[d.layer];
+    const layers::Layer& drawn = report.layers[d.layer];
     for (const int member : drawn.members) ++summary.layers[member].merged_renders;
     for (std::size_t e = 0; e < summary.effects.size(); ++e)
       summary.effect_passes[e] += is_drawn_with(summary.effects[e], drawn);

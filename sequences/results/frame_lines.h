@@ -60,14 +60,13 @@ struct FrameLine {
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
 };
 
-FrameLine line_of(const Pipeline& pipeline, const FrameReport& report);
+FrameLine line_of(const FrameReport& report);
 std::string json_of(const FrameLine& line);
 /// Empty if the text is not a whole line of frames.jsonl.
 std::optional<FrameLine> frame_line_from_json(const std::string& text);
 
 /// A line of decisions.jsonl.
-std::string json_of(const Pipeline& pipeline, const FrameReport& report,
-                    const regulator::LayerDecision& decision);
+std::string json_of(const FrameReport& report, const regulator::LayerDecision& decision);
 
 std::string hash_of(const chunker::Frame& picture);
 
@@ -123,7 +122,7 @@ struct Summary {
 
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence);
 /// Adds one frame's decisions; aggregates are added to the layers when they are first shown.
-void add_decisions(Summary& summary, const Pipeline& pipeline, const FrameReport& report,
+void add_decisions(Summary& summary, const FrameReport& report,
                    const PipelineState& state);
 std::string json_of(const Summary& summary);
 /// The table that the tool prints at the end.

@@ -130,21 +130,21 @@ FrameQuality judge(const Pipeline& pipeline, const FrameReport& report,
   return {compare(shown, direct), compare(shown, reference), compare(reference, direct)};
 }
 
-Image8 with_outlines(const Pipeline& pipeline, const FrameReport& report) {
+Image8 with_outlines(const FrameReport& report) {
   std::vector<Outline> outlines;
   for (const ShownSprite& sprite : report.shown)
     outlines.push_back({sprite.screen_from_sprite, sprite.size_px, sprite.age_frames,
-                        pipeline.layers.layers[sprite.layer].name + " " + std::to_string(sprite.age_frames)});
+                        report.layers[sprite.layer].name + " " + std::to_string(sprite.age_frames)});
   Image8 image = to_image8(report.picture);
   draw_outlines(image, outlines);
   return image;
 }
 
-void write_picture(const Pipeline& pipeline, const FrameReport& report, const RunOptions& options) {
+void write_picture(const FrameReport& report, const RunOptions& options) {
   const std::string path = frame_path(options, report.frame);
   switch (options.format) {
     case FrameFormat::Png:
-      write_png(path, options.overlay ? with_outlines(pipeline, report) : to_image8(report.picture));
+      write_png(path, options.overlay ? with_outlines(report) : to_image8(report.picture));
       break;
     case FrameFormat::Exr:
       write_exr(path, report.picture);
@@ -158,7 +158,7 @@ void write_picture(const Pipeline& pipeline, const FrameReport& report, const Ru
 class Runner {
  public:
   Runner(const Sequence& sequence, const Settings& settings, const RunOptions& options)
-      : options_(options), pipeline_(*sequence.scene, sequence.layers, settings), state_(pipeline_) {
+      : options_(options), pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)), state_(pipeline_) {
     make_folder(options.out);
     if (!options.plan_only) make_folder(options.out + "/frames");
     if (options.separate) make_folder(options.out + "/separate");
@@ -187,10 +187,9 @@ class Runner {
     const bool draw = in_range && kept == kept_.end() && prepared_;
     FrameReport report = step(pipeline_, state_, frame, draw ? prepared_.get() : nullptr);
     if (!in_range) return;
-    const Pipeline& pipeline = with_aggregates(pipeline_, state_);
-    add_decisions(summary_, pipeline, report, state_);
+    add_decisions(summary_, report, state_);
     for (const int layer : layers_with_lines(state_, report))
-      decisions_->write(json_of(pipeline, report, report.plan.decisions[layer]));
+      decisions_->write(json_of(report, report.plan.decisions[layer]));
     if (kept != kept_.end())
       writer_.submit([this, line = kept->second] { add_line(line); });
     else
@@ -219,21 +218,17 @@ class Runner {
     std::optional<FrameQuality> quality;
     if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
     if (prepared_ && options_.separate)
-      write_separate(with_aggregates(pipeline_, state_), state_, report, options_.out + "/separate");
+      write_separate(pipeline_, state_, report, options_.out + "/separate");
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
-    // The aggregates may grow meanwhile; those of this frame stay as they are as long as they are held.
-    writer_.submit([this, shared, quality, grown = state_.order.grown] {
-      finish_frame(with_aggregates(pipeline_, grown.get()), *shared, quality);
-    });
+    writer_.submit([this, shared, quality] { finish_frame(*shared, quality); });
   }
 
-  void finish_frame(const Pipeline& pipeline, const FrameReport& report,
-                    const std::optional<FrameQuality>& quality) {
-    FrameLine line = line_of(pipeline, report);
+  void finish_frame(const FrameReport& report, const std::optional<FrameQuality>& quality) {
+    FrameLine line = line_of(report);
     line.quality = quality;
     if (prepared_) {
       const Stopwatch watch;
-      write_picture(pipeline, report, options_);
+      write_picture(report, options_);
       line.io_ms = watch.ms();
     }
     frames_->write(json_of(line));

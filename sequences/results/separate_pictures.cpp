@@ -50,7 +50,7 @@ void write(const Pipeline& pipeline, const std::vector<chunker::PlacedSprite>& s
 
 void write_separate(const Pipeline& pipeline, const PipelineState& state, const FrameReport& report,
                     const std::string& folder) {
-  const auto& all = pipeline.layers.layers;
+  const LayerTable& all = report.layers;
   const auto base_of = [&](const ShownSprite& s) {
     return all[s.layer].base < 0 ? s.layer : all[s.layer].base;
   };

@@ -39,7 +39,7 @@ struct Workload {
 void Plan(benchmark::State& run, regulator::Policy policy,
           sequences::Cycles cycles = sequences::Cycles::Keep) {
   const Workload work(policy, cycles);
-  const sequences::Pipeline pipeline(work.scene, work.layers, work.settings);
+  const sequences::Pipeline pipeline = sequences::make_pipeline(work.scene, work.layers, work.settings);
   double plan_ms = 0;
   std::int64_t renders = 0, frames = 0;
   for (auto _ : run) {
@@ -70,17 +70,17 @@ BENCHMARK(SceneAt)->Unit(benchmark::kMicrosecond);
 
 void CaptureAll(benchmark::State& run) {
   const Workload work(regulator::Policy::Threshold);
-  const sequences::Pipeline pipeline(work.scene, work.layers, work.settings);
+  const sequences::Pipeline pipeline = sequences::make_pipeline(work.scene, work.layers, work.settings);
   const layers::SceneFrame frame = work.scene.at(1.3);
   for (auto _ : run)
     for (const layers::Layer& layer : work.layers.layers)
-      benchmark::DoNotOptimize(layers::capture(frame, layer, pipeline.bounds[layer.id], work.settings.view));
+      benchmark::DoNotOptimize(layers::capture(frame, layer, pipeline.authored.bound(layer.id), work.settings.view));
 }
 BENCHMARK(CaptureAll)->Unit(benchmark::kMicrosecond);
 
 void Order(benchmark::State& run) {
   const Workload work(regulator::Policy::Threshold);
-  const sequences::Pipeline pipeline(work.scene, work.layers, work.settings);
+  const sequences::Pipeline pipeline = sequences::make_pipeline(work.scene, work.layers, work.settings);
   sequences::PipelineState state(pipeline);
   int frame = 0;
   for (auto _ : run) {

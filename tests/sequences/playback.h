@@ -13,7 +13,7 @@ namespace talisman::tests {
 
 struct Playback {
   Playback(const sequences::Sequence& s, const sequences::Settings& settings, bool draw = false)
-      : sequence(s), pipeline(*sequence.scene, sequence.layers, settings), state(pipeline) {
+      : sequence(s), pipeline(sequences::make_pipeline(*sequence.scene, sequence.layers, settings)), state(pipeline) {
     if (draw) prepared.emplace(*sequence.scene);
   }
   sequences::FrameReport next() {
@@ -25,7 +25,6 @@ struct Playback {
     while (frame < frames) reports.push_back(next());
     return reports;
   }
-  const sequences::Pipeline& grown() const { return sequences::with_aggregates(pipeline, state); }
 
   sequences::Sequence sequence;
   sequences::Pipeline pipeline;

@@ -38,7 +38,7 @@ inline Show run(const Room& room, regulator::Policy policy, int frames, bool dra
   settings.regulator.policy = policy;
   settings.regulator.geometric_px = geometric_px;
   settings.frames = frames;
-  const sequences::Pipeline pipeline(room.scene, result.layers, settings);
+  const sequences::Pipeline pipeline = sequences::make_pipeline(room.scene, result.layers, settings);
   const chunker::PreparedScene prepared(room.scene);
   sequences::PipelineState state(pipeline);
   for (int frame = 0; frame < frames; ++frame)

@@ -37,7 +37,7 @@ struct Stage {
   std::vector<FrameReport> run(int frames, bool draw) const {
     Settings of_run = settings;
     of_run.frames = frames;
-    const Pipeline pipeline(scene, layers, of_run);
+    const Pipeline pipeline = make_pipeline(scene, layers, of_run);
     const chunker::PreparedScene prepared(scene);
     PipelineState state(pipeline);
     std::vector<FrameReport> reports;

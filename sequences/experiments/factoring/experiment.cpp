@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "layers/check.h"
-#include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/shade_passes.h"
 
@@ -20,11 +19,11 @@ using layers::Layer;
 // --- Layers of one frame ---
 
 /// The layer of this name in another variant: names of surfaces are the same in all of them.
-const Layer& layer_named(const Pipeline& pipeline, const std::string& name) {
-  for (const Layer& layer : pipeline.layers.layers)
+const Layer& layer_named(const LayerTable& layers, const std::string& name) {
+  for (const Layer& layer : layers)
     if (layer.name == name) return layer;
   TALISMAN_CHECK(false);  // a variant without this layer
-  return pipeline.layers.layers.front();
+  return layers[0];
 }
 
 /// Makes the pictures of one frame.
@@ -32,7 +31,7 @@ class LayerPainter {
  public:
   LayerPainter(const Pipeline& flush, const Pipeline& whole, const PipelineState& state,
                const FrameReport& report, const chunker::PreparedScene& prepared, bool constant_blend)
-      : flush_(with_aggregates(flush, state)),
+      : flush_(flush),
         whole_(whole),
         state_(state),
         report_(report),
@@ -53,7 +52,7 @@ class LayerPainter {
   }
 
  private:
-  const Layer& layer(const ShownSprite& sprite) const { return flush_.layers.layers[sprite.layer]; }
+  const Layer& layer(const ShownSprite& sprite) const { return report_.layers[sprite.layer]; }
 
   /// A base and what lies directly in front of it.
   ShadedLayer picture(std::span<const ShownSprite> group) {
@@ -77,15 +76,15 @@ class LayerPainter {
     for (const ShownSprite& sprite : group) {
       TALISMAN_CHECK(state_.memory[sprite.layer].placement == placement);
       picture.terms.push_back({layer(sprite).kind,
-                               draw_layer_linear({flush_, maps_, prepared_, now_}, layer(sprite), placement),
+                               draw_layer_linear({flush_, report_.layers, maps_, prepared_, now_}, layer(sprite), placement),
                                sprite.multipliers.color});
     }
-    const Layer& whole = layer_named(whole_, layer(group.front()).name);
+    const Layer& whole = layer_named(whole_.authored, layer(group.front()).name);
     const bool two = layer(group.front()).factored.second_texture && !constant_blend_;
     const auto base = two ? chunker::BasePasses::Two : chunker::BasePasses::One;
     const layers::vec2 gains =
         two ? layers::vec2(group[0].multipliers.color.x, group[1].multipliers.color.x) : layers::vec2(1);
-    const auto terms = draw_terms({whole_, whole_maps_, prepared_, now_}, whole, placement, base);
+    const auto terms = draw_terms({whole_, whole_.authored, whole_maps_, prepared_, now_}, whole, placement, base);
     picture.surface = chunker::surface_of(terms, gains);
     picture.unfactored = chunker::blend_terms(terms, gains);
   }
@@ -105,7 +104,7 @@ FactoredMask all_of(const std::vector<ShadedLayer>& pictures) { return FactoredM
 // --- The pictures of a frame ---
 
 Pipeline pipeline_of(const Variant& variant) {
-  return Pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
+  return make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
 }
 
 /// A variant of which single frames are drawn, each by itself: every layer in every frame.
@@ -218,7 +217,7 @@ class Experiment {
       PredictionCheck own;
       own.add(predict(pictures, alone),
               composite_layers(pictures, alone, prediction.size_px, variant_.sequence.scene->background));
-      const std::string& name = flush_.pipeline.layers.layers[pictures[i].layer].name;
+      const std::string& name = flush_.pipeline.authored[pictures[i].layer].name;
       const auto layer = std::find_if(result_.layers.begin(), result_.layers.end(),
                                       [&](const FactoredLayer& l) { return l.name == name; });
       layer->check += own;

@@ -8,6 +8,7 @@
 #include "layers/check.h"
 #include "regulator/policies.h"
 #include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/make_pipeline.h"
 #include "sequences/pipeline/shade_passes.h"
 
 namespace talisman::sequences {
@@ -92,7 +93,7 @@ double apparent_shift_px(const LayerPicture& old_one, const LayerPicture& fresh)
 class LayerStage {
  public:
   LayerStage(const Sequence& sequence, const Settings& settings)
-      : pipeline_(*sequence.scene, sequence.layers, settings),
+      : pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)),
         state_(pipeline_),
         prepared_(*sequence.scene) {}
 
@@ -100,7 +101,7 @@ class LayerStage {
   void sample(int layer, int frame, std::vector<CalibrationSample>& samples) {
     const layers::LayerState now = captured_states(pipeline_, state_, frame)[layer];
     if (!now.touches_display) return;
-    const layers::SpritePlacement placement = placement_without_growth(pipeline_, now);
+    const layers::SpritePlacement placement = placement_without_growth(pipeline_, state_.layers, now);
     if (placement.empty()) return;
     std::optional<LayerPicture> fresh;  // drawn when there is something to compare it with
     for (const int age : calibrated_ages()) {
@@ -108,7 +109,7 @@ class LayerStage {
       const layers::LayerState then = captured_states(pipeline_, state_, frame - age)[layer];
       if (!then.touches_display) continue;
       const layers::SpritePlacement old_placement = captured_placement(pipeline_, state_, layer, frame - age);
-      const LayerAssessment assessment = assess_sprite(pipeline_, then, old_placement, now, age);
+      const LayerAssessment assessment = assess_sprite(pipeline_, state_.layers, then, old_placement, now, age);
       if (old_placement.empty() || !(assessment.identical || regulator::has_sound_fit(assessment))) continue;
       if (!fresh) fresh = draw(layer, frame, placement, layers::dmat3(1.0), layers::dvec3(1.0));
       const LayerPicture old_one =
@@ -131,8 +132,8 @@ class LayerStage {
   LayerPicture draw(int layer, int instant, const layers::SpritePlacement& placement,
                     const layers::dmat3& warp, const layers::dvec3& color) {
     const chunker::RenderResult drawn =
-        draw_layer({pipeline_, shadow_maps_, prepared_, scene_at(pipeline_, instant)},
-                   pipeline_.layers.layers[layer], placement);
+        draw_layer({pipeline_, state_.layers, shadow_maps_, prepared_, scene_at(pipeline_, instant)},
+                   state_.layers[layer], placement);
     return picture_of(drawn.sprite, warp * layers::to_mat3(placement.screen_from_sprite), color,
                       pipeline_.settings.view.display_px);
   }

@@ -58,12 +58,12 @@ double reference_polygons_per_frame(const Sequence& sequence, const Settings& se
                                     const ExperimentFrames& frames) {
   Settings reference = settings;
   reference.regulator.policy = regulator::Policy::Reference;
-  const Pipeline pipeline(*sequence.scene, sequence.layers, reference);
+  const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, reference);
   PipelineState state(pipeline);
   std::int64_t polygons = 0;
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
-    polygons += line_of(with_aggregates(pipeline, state), report).polygons_reference;
+    polygons += line_of(report).polygons_reference;
   }
   return static_cast<double>(polygons) / (frames.last - frames.first + 1);
 }

@@ -25,15 +25,14 @@ constexpr std::array kPredictions = {
 Summary plan_of(const Sequence& sequence, Settings settings, const RegulatorOptions& options,
                 const ExperimentFrames& frames) {
   settings.regulator = options;
-  const Pipeline pipeline(*sequence.scene, sequence.layers, settings);
+  const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, settings);
   PipelineState state(pipeline);
   Summary summary = start_summary(pipeline, sequence.name);
   for (int frame = 0; frame <= frames.last; ++frame) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
     if (frame < frames.first) continue;
-    const Pipeline& grown = with_aggregates(pipeline, state);
-    add_decisions(summary, grown, report, state);
-    summary.frames.push_back(line_of(grown, report));
+    add_decisions(summary, report, state);
+    summary.frames.push_back(line_of(report));
   }
   return summary;
 }

@@ -26,7 +26,7 @@ Timing timing_of(const std::vector<FrameLine>& lines, double FrameLine::*field) 
 
 SettingRun::SettingRun(const Sequence& sequence, Settings settings, const RegulatorSetting& setting)
     : setting_(setting),
-      pipeline_(*sequence.scene, sequence.layers, with(std::move(settings), setting)),
+      pipeline_(make_pipeline(*sequence.scene, sequence.layers, with(std::move(settings), setting))),
       state_(pipeline_),
       summary_(start_summary(pipeline_, sequence.name)) {}
 
@@ -39,9 +39,8 @@ void SettingRun::advance(int frame, const chunker::PreparedScene* prepared) {
 }
 
 void SettingRun::count() {
-  const Pipeline& pipeline = with_aggregates(pipeline_, state_);
-  add_decisions(summary_, pipeline, report_, state_);
-  summary_.frames.push_back(line_of(pipeline, report_));
+  add_decisions(summary_, report_, state_);
+  summary_.frames.push_back(line_of(report_));
   for (const regulator::LayerDecision& decision : report_.plan.decisions) chunks_ += decision.cost.chunks;
 }
 

@@ -80,7 +80,7 @@ Variant under_own_policy(Variant variant) {
 }
 
 std::vector<Image8> direct_pictures(const Variant& variant, const std::vector<int>& frames) {
-  const Pipeline pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
+  const Pipeline pipeline = make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   const chunker::PreparedScene prepared(*variant.sequence.scene);
   std::vector<Image8> pictures;
   for (const int frame : frames) pictures.push_back(to_image8(draw_direct(pipeline, frame, prepared)));

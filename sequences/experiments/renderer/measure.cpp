@@ -45,7 +45,7 @@ class VariantRun {
   VariantRun(const Variant& variant, const chunker::PreparedScene& prepared, const Workload& workload)
       : prepared_(prepared),
         workload_(workload),
-        pipeline_(*variant.sequence.scene, variant.sequence.layers, variant.settings) {}
+        pipeline_(make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings)) {}
   VariantRun(const VariantRun&) = delete;
   VariantRun& operator=(const VariantRun&) = delete;
 
@@ -72,7 +72,7 @@ class VariantRun {
 
  private:
   void count(const FrameReport& report) {
-    const FrameLine line = line_of(with_aggregates(pipeline_, *state_), report);
+    const FrameLine line = line_of(report);
     measured_.renders += line.renders;
     measured_.polygons += line.polygons_rendered;
     measured_.pixels += line.pixels_rendered;

@@ -33,7 +33,7 @@ struct Truth {
 };
 
 void draw_truth(const RateOptions& options, Truth& truth) {
-  const Pipeline pipeline(truth.scene, truth.layers, settings_for(options, Curve::aff, 0));
+  const Pipeline pipeline = make_pipeline(truth.scene, truth.layers, settings_for(options, Curve::aff, 0));
   truth.pictures.resize(options.frames);
   oneapi::tbb::parallel_for(0, options.frames, [&](int frame) {
     truth.pictures[frame] = to_image8(draw_reference(pipeline, frame, truth.prepared));
@@ -42,7 +42,7 @@ void draw_truth(const RateOptions& options, Truth& truth) {
 
 CurveQuality draw_and_compare(const RateOptions& options, const Truth& truth, Curve curve,
                               double threshold_px) {
-  const Pipeline pipeline(truth.scene, truth.layers, settings_for(options, curve, threshold_px));
+  const Pipeline pipeline = make_pipeline(truth.scene, truth.layers, settings_for(options, curve, threshold_px));
   PipelineState state(pipeline);
   CurveQuality result{curve, threshold_px, 0, {}, {}};
   std::vector<FrameDiff> diffs;

@@ -117,12 +117,12 @@ TEST(CalibrationSamples, FiducialsAreThoseThatTheRegulatorSees) {
   const std::vector<CalibrationSample> samples =
       calibration_samples(sequence, settings, std::vector{20, 36}, ProgressKind::None);
   ASSERT_GT(samples.size(), 12u);
-  const Pipeline pipeline(*sequence.scene, sequence.layers, settings);
+  const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, settings);
   PipelineState state(pipeline);
   for (const CalibrationSample& sample : samples) {
     const int then = sample.frame - sample.age_frames;
     const regulator::LayerAssessment assessment =
-        assess_sprite(pipeline, captured_states(pipeline, state, then)[sample.layer],
+        assess_sprite(pipeline, state.layers, captured_states(pipeline, state, then)[sample.layer],
                       captured_placement(pipeline, state, sample.layer, then),
                       captured_states(pipeline, state, sample.frame)[sample.layer], sample.age_frames);
     EXPECT_EQ(sample.fiducials[0], assessment.fiducials.geometric.px);

@@ -181,7 +181,7 @@ struct SlowRun {
 SlowRun slow_run(const regulator::RegulatorOptions& options, const std::set<int>& frames) {
   Settings settings = settings_for(moving());
   settings.regulator = options;
-  const Pipeline pipeline(*moving().scene, moving().layers, settings);
+  const Pipeline pipeline = make_pipeline(*moving().scene, moving().layers, settings);
   const chunker::PreparedScene prepared(*moving().scene);
   PipelineState state(pipeline);
   SlowRun run;

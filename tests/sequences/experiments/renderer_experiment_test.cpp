@@ -199,7 +199,7 @@ TEST(MeasureVariants, PicturesAndCountersAreThoseOfAFrameDrawnAlone) {
   Variant variant = shadowless();
   variant.settings.regulator.policy = regulator::Policy::Reference;
   const Measured found = measure_one(variant, {{2, 5}, false, {5}, 2});
-  const Pipeline pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
+  const Pipeline pipeline = make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   const chunker::PreparedScene prepared(*variant.sequence.scene);
   chunker::RenderCounters sum;
   for (const int frame : {2, 5}) {
@@ -221,11 +221,11 @@ TEST(MeasureVariants, ARunKeepsItsSprites) {
   const Measured fresh = measure_one(variant, {frames, false, {}, 1}),
                  run = measure_one(variant, {frames, true, {}, 2});
   EXPECT_LT(run.renders, fresh.renders);
-  const Pipeline pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
+  const Pipeline pipeline = make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   PipelineState state(pipeline);
   std::int64_t renders = 0;
   for (const int frame : frames)
-    renders += line_of(with_aggregates(pipeline, state), step(pipeline, state, frame, nullptr)).renders;
+    renders += line_of(step(pipeline, state, frame, nullptr)).renders;
   EXPECT_EQ(run.renders, renders);
 }
 

@@ -45,7 +45,7 @@ std::vector<std::string> names_of(const Variant& variant) {
 }
 
 FrameReport frame_of(const Variant& variant, int frame) {
-  const Pipeline pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
+  const Pipeline pipeline = make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   const chunker::PreparedScene prepared(*variant.sequence.scene);
   PipelineState state(pipeline);
   for (int f = 0; f < frame; ++f) step(pipeline, state, f, nullptr);

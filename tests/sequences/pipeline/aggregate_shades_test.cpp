@@ -110,8 +110,8 @@ TEST(AggregateShades, AggregateHoldsTheTermsOfItsMembers) {
   ASSERT_FALSE(s.layers.layers[kWall].holds.shadows || s.layers.layers[kWall].holds.specular);
   Playback run(s, settings_of(s, Policy::Threshold));
   while (run.frame < 8) run.next();
-  ASSERT_EQ(run.grown().layers.layers.size(), 5u);
-  const Layer& both = run.grown().layers.layers[kBoth];
+  ASSERT_EQ(run.state.layers.size(), 5u);
+  const Layer& both = run.state.layers[kBoth];
   EXPECT_EQ(both.members, (std::vector{kWall, kBall})) << "terms are no members";
   EXPECT_EQ(both.parts.size(), 2u) << "the surface of the wall is drawn once, not once per term";
   EXPECT_EQ(both.holds, (layers::HeldTerms{.shadows = true, .specular = true}));
@@ -166,7 +166,7 @@ int difference(const Image8& a, const Image8& b, int pixel) {
 /// aggregate.
 void expect_merged_frames_equal_one_pass(const Sequence& s, const Sequence& without) {
   Playback run(s, settings_of(s, Policy::Reference), true);
-  const Pipeline plain(*without.scene, without.layers, settings_of(without, Policy::Direct));
+  const Pipeline plain = make_pipeline(*without.scene, without.layers, settings_of(without, Policy::Direct));
   const chunker::PreparedScene plain_scene(*without.scene);
   long compared = 0, wrong = 0, of_the_term = 0;
   int largest = 0;
@@ -251,7 +251,7 @@ TEST(AggregateShades, PlanWithoutPixelsMakesTheSameDecisionsAndPasses) {
     EXPECT_EQ(a.shade, b.shade) << a.frame;
     ASSERT_EQ(a.plan.decisions.size(), b.plan.decisions.size());
     for (const regulator::LayerDecision& d : a.plan.decisions)
-      ASSERT_EQ(json_of(planned.grown(), a, d), json_of(drawn.grown(), b, b.plan.decisions[d.layer]));
+      ASSERT_EQ(json_of(a, d), json_of(b, b.plan.decisions[d.layer]));
   }
 }
 

@@ -118,8 +118,8 @@ TEST(Aggregates, TheSameLayersHaveTheSameAggregateAgain) {
   int mergers = 0;
   for (const FrameReport& report : run.all(40)) mergers += !report.order.mergers.empty();
   EXPECT_GT(mergers, 8);  // two passages
-  EXPECT_EQ(run.grown().layers.layers.size(), 4u);
-  EXPECT_EQ(run.grown().layers.layers[kBoth].name, "wall+ball");
+  EXPECT_EQ(run.state.layers.size(), 4u);
+  EXPECT_EQ(run.state.layers[kBoth].name, "wall+ball");
 }
 
 TEST(Aggregates, SpriteIsGivenUpWhenItsAggregateIsGoneForLong) {
@@ -147,7 +147,7 @@ TEST(Aggregates, EveryPolicyDecidesTheSameWithAndWithoutPixels) {
       const FrameReport a = planned.next(), b = drawn.next();
       ASSERT_EQ(a.plan.decisions.size(), b.plan.decisions.size());
       for (const regulator::LayerDecision& d : a.plan.decisions)
-        ASSERT_EQ(json_of(planned.grown(), a, d), json_of(drawn.grown(), b, b.plan.decisions[d.layer]));
+        ASSERT_EQ(json_of(a, d), json_of(b, b.plan.decisions[d.layer]));
       merged_frames += !a.order.mergers.empty();
       EXPECT_EQ(b.shown.size(), a.order.mergers.empty() ? 3u : 2u);
     }
@@ -207,7 +207,7 @@ TEST(Aggregates, LayersThatTheirGroupsOrderAreNotSorted) {
     EXPECT_FALSE(report.order.sorted);
     EXPECT_EQ(report.order.counters.queries, 0);
     EXPECT_EQ(report.order.back_to_front, (std::vector{kBystander, kBall, kWall}));
-    EXPECT_FALSE(line_of(run.grown(), report).visibility.has_value());
+    EXPECT_FALSE(line_of(report).visibility.has_value());
   }
 }
 
@@ -231,10 +231,10 @@ TEST(Aggregates, ResultsNameThem) {
   int lines = 0, merged_frames = 0;
   for (int frame = 0; frame < 20; ++frame) {
     const FrameReport report = run.next();
-    add_decisions(summary, run.grown(), report, run.state);
+    add_decisions(summary, report, run.state);
     lines += static_cast<int>(layers_with_lines(run.state, report).size());
     merged_frames += !report.order.mergers.empty();
-    summary.frames.push_back(line_of(run.grown(), report));
+    summary.frames.push_back(line_of(report));
     const auto again = frame_line_from_json(json_of(summary.frames.back()));
     ASSERT_TRUE(again.has_value());
     EXPECT_EQ(json_of(*again), json_of(summary.frames.back()));

@@ -52,12 +52,11 @@ int front_layer(const FrameReport& report, const chunker::SpriteStore& sprites, 
 }
 
 /// Back to front, the layers that cover the pixel.
-std::string layers_at(const Pipeline& authored, const FrameReport& report, const PipelineState& state, int x,
-                      int y) {
+std::string layers_at(const FrameReport& report, const PipelineState& state, int x, int y) {
   std::string text;
   for (const ShownSprite& shown : report.shown)
     if (alpha_at(shown, state.sprites, x, y) > 0)
-      text += with_aggregates(authored, state).layers.layers[shown.layer].name + ", ";
+      text += report.layers[shown.layer].name + ", ";
   return text;
 }
 
@@ -75,7 +74,7 @@ struct AgainstOnePass {
 
 /// Every `stride`-th frame against the picture of one pass.
 AgainstOnePass against_one_pass(const Sequence& s, const Settings& settings, int stride) {
-  const Pipeline pipeline(*s.scene, s.layers, settings);
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, settings);
   const chunker::PreparedScene prepared(*s.scene);
   PipelineState state(pipeline);
   AgainstOnePass result;
@@ -102,7 +101,7 @@ AgainstOnePass against_one_pass(const Sequence& s, const Settings& settings, int
           wrong += d > 1;
           if (d > 1)
             std::printf("  frame %d, pixel %d, %d: %s\n", frame, x, y,
-                        layers_at(pipeline, report, state, x, y).c_str());
+                        layers_at(report, state, x, y).c_str());
         }
       }
   }
@@ -144,7 +143,7 @@ TEST(Carousel, ExpressionsSavePolygonsThatMergingDraws) {
   const auto polygons = [&](Compositor compositor) {
     Settings settings = settings_of(s, Policy::Threshold);
     settings.compositor = compositor;
-    const Pipeline pipeline(*s.scene, s.layers, settings);
+    const Pipeline pipeline = make_pipeline(*s.scene, s.layers, settings);
     PipelineState state(pipeline);
     long sum = 0;
     for (int frame = 0; frame < s.frames; ++frame)
@@ -220,7 +219,7 @@ TEST(Carousel, RaysThroughPixelsMeetTheLayerThatIsInFront) {
   // Independent of renderer and compositor: which part does the eye meet first? It must be drawn by the layer
   // that is shown in front, at every pixel that no layer covers in part.
   const Sequence s = load_sequence("carousel");
-  const Pipeline pipeline(*s.scene, s.layers, settings_of(s, Policy::Reference));
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, settings_of(s, Policy::Reference));
   const chunker::PreparedScene prepared(*s.scene);
   PipelineState state(pipeline);
   long checked = 0, wrong = 0;
@@ -228,7 +227,6 @@ TEST(Carousel, RaysThroughPixelsMeetTheLayerThatIsInFront) {
     const bool look = frame % 6 == 2;
     const FrameReport report = step(pipeline, state, frame, look ? &prepared : nullptr);
     if (!look) continue;
-    const Pipeline& grown = with_aggregates(pipeline, state);
     const layers::SceneFrame now = s.scene->at(frame / s.fps);
     const std::vector<Body> bodies = bodies_of(now);
     const layers::ivec2 size = pipeline.settings.view.display_px;
@@ -240,8 +238,8 @@ TEST(Carousel, RaysThroughPixelsMeetTheLayerThatIsInFront) {
         const int layer = front_layer(report, state.sprites, x, y);
         const int part = nearest_part(bodies, eye, ray_through(now.camera, size, x + 0.5, y + 0.5));
         const bool right = layer < 0 ? part < 0
-                                     : std::count(grown.layers.layers[layer].parts.begin(),
-                                                  grown.layers.layers[layer].parts.end(), part) == 1;
+                                     : std::count(report.layers[layer].parts.begin(),
+                                                  report.layers[layer].parts.end(), part) == 1;
         wrong += !right;
         if (!right && wrong <= 5)
           ADD_FAILURE() << "frame " << frame << " pixel " << x << ", " << y << ": layer " << layer
@@ -255,8 +253,8 @@ TEST(Carousel, RaysThroughPixelsMeetTheLayerThatIsInFront) {
 
 TEST(Carousel, ThresholdShowsTheOrderOfTheReferenceWithinItsBound) {
   const Sequence s = load_sequence("carousel");
-  const Pipeline exact(*s.scene, s.layers, settings_of(s, Policy::Reference));
-  const Pipeline thrifty(*s.scene, s.layers, settings_of(s, Policy::Threshold));
+  const Pipeline exact = make_pipeline(*s.scene, s.layers, settings_of(s, Policy::Reference));
+  const Pipeline thrifty = make_pipeline(*s.scene, s.layers, settings_of(s, Policy::Threshold));
   PipelineState exact_state(exact), thrifty_state(thrifty);
   int renders = 0, renders_of_reference = 0;
   for (int frame = 0; frame < s.frames; ++frame) {
@@ -276,7 +274,7 @@ TEST(Carousel, ThresholdShowsTheOrderOfTheReferenceWithinItsBound) {
 
 TEST(Carousel, PlanksGoRoundUntilOneLeavesAndAgainWhenItIsBack) {
   const Sequence s = load_sequence("carousel");
-  const Pipeline pipeline(*s.scene, s.layers, settings_of(s, Policy::Reference));
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, settings_of(s, Policy::Reference));
   PipelineState state(pipeline);
   std::string history;  // one letter for each frame: are the planks merged?
   for (int frame = 0; frame < s.frames; ++frame) {
@@ -284,7 +282,7 @@ TEST(Carousel, PlanksGoRoundUntilOneLeavesAndAgainWhenItIsBack) {
     bool planks = false;
     for (const Merger& merger : report.order.mergers)
       planks |=
-          with_aggregates(pipeline, state).layers.layers[merger.layer].name == "plank a+plank b+plank c";
+          report.layers[merger.layer].name == "plank a+plank b+plank c";
     history += planks ? 'm' : '.';
   }
   EXPECT_EQ(history.front(), 'm');

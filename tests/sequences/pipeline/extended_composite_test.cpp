@@ -217,14 +217,14 @@ Settings extended(const Sequence& s, regulator::Policy policy = regulator::Polic
 
 TEST(ResolveCycle, WhatHasNoExpressionIsLeftToMerge) {
   const Sequence s = load_sequence("carousel");
-  const Pipeline pipeline(*s.scene, s.layers, extended(s));
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, extended(s));
   MergedComponent c;
   c.layers = {10, 11, 12};
   c.relations = {{10, 11}, {11, 12}, {12, 10}};
   EXPECT_TRUE(resolve_cycle(pipeline, {}, c).cycle);
   Settings talisman = extended(s);
   talisman.compositor = Compositor::Talisman;
-  EXPECT_FALSE(resolve_cycle(Pipeline(*s.scene, s.layers, talisman), {}, c).cycle);
+  EXPECT_FALSE(resolve_cycle(make_pipeline(*s.scene, s.layers, talisman), {}, c).cycle);
   c.reason = MergedComponent::Reason::Interpenetration;
   EXPECT_FALSE(resolve_cycle(pipeline, {}, c).cycle);
   // A contradiction of reason and relations must not produce a picture either.
@@ -235,7 +235,7 @@ TEST(ResolveCycle, WhatHasNoExpressionIsLeftToMerge) {
 
 TEST(ResolveCycle, HeldComponentsStayAsTheyWere) {
   const Sequence s = load_sequence("carousel");
-  const Pipeline pipeline(*s.scene, s.layers, extended(s));
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, extended(s));
   MergedComponent c;
   c.layers = {10, 11, 12};
   c.relations = {{10, 11}, {11, 12}};
@@ -248,7 +248,7 @@ TEST(ResolveCycle, HeldComponentsStayAsTheyWere) {
 
 TEST(ExtendedCompositor, ReasonsAndCountersTellOfExpressions) {
   const Sequence s = load_sequence("carousel");
-  const Pipeline pipeline(*s.scene, s.layers, extended(s));
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, extended(s));
   PipelineState state(pipeline);
   const FrameReport report = step(pipeline, state, 0, nullptr);
   ASSERT_EQ(s.layers.layers[10].name, "plank a");
@@ -259,7 +259,7 @@ TEST(ExtendedCompositor, ReasonsAndCountersTellOfExpressions) {
   EXPECT_EQ(report.order.counters.merged_layers, 0);
   // Three layers, each out of the one before it: six reads, a sum and a term.
   EXPECT_EQ(report.order.resolved_counters(), (ResolvedCounters{1, 3, 2, 6}));
-  const auto line = frame_line_from_json(json_of(line_of(pipeline, report)));
+  const auto line = frame_line_from_json(json_of(line_of(report)));
   ASSERT_TRUE(line && line->visibility);
   EXPECT_EQ(line->visibility->resolved, report.order.resolved_counters());
   Summary summary = start_summary(pipeline, s.name);
@@ -272,14 +272,14 @@ TEST(ExtendedCompositor, ReasonsAndCountersTellOfExpressions) {
 
 TEST(ExtendedCompositor, TalismanHasNeitherExpressionsNorTheirFigures) {
   const Sequence s = load_sequence("carousel");
-  const Pipeline pipeline(*s.scene, s.layers, resolve({}, s, true).settings);
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, resolve({}, s, true).settings);
   PipelineState state(pipeline);
   const FrameReport report = step(pipeline, state, 0, nullptr);
   EXPECT_EQ(report.order.mergers.size(), 1u);
   EXPECT_EQ(report.order.resolved_counters(), ResolvedCounters{});
   Summary summary = start_summary(pipeline, s.name);
   summary.planned_only = true;
-  summary.frames = {line_of(pipeline, report)};
+  summary.frames = {line_of(report)};
   EXPECT_THAT(table_of(summary), Not(HasSubstr("expressions")));
 }
 
@@ -309,12 +309,12 @@ TEST(ExtendedCompositor, LayersOfLayersAreMergedAndSayWhy) {
   const TemporaryFolder folder;
   const Sequence plain = load_sequence(folder.write("plain.yaml", boards("")));
   EXPECT_EQ(plain.compositor, Compositor::Extended);
-  const Pipeline apart(*plain.scene, plain.layers, resolve({}, plain, true).settings);
+  const Pipeline apart = make_pipeline(*plain.scene, plain.layers, resolve({}, plain, true).settings);
   PipelineState apart_state(apart);
   EXPECT_EQ(step(apart, apart_state, 0, nullptr).order.resolved.size(), 1u);
 
   const Sequence shaded = load_sequence(folder.write("shaded.yaml", boards(", shading: {specular: {}}")));
-  const Pipeline merged(*shaded.scene, shaded.layers, resolve({}, shaded, true).settings);
+  const Pipeline merged = make_pipeline(*shaded.scene, shaded.layers, resolve({}, shaded, true).settings);
   PipelineState merged_state(merged);
   const FrameReport report = step(merged, merged_state, 0, nullptr);
   EXPECT_TRUE(report.order.resolved.empty());

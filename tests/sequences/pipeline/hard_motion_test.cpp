@@ -129,7 +129,7 @@ TEST(HardMotion, FrameThatIsRepeatedIsReusedUnchanged) {
   for (const RegulatorOptions& options : bounded_policies()) {
     Stage stage = fleet(5, 4, options);
     stage.settings.frames = 40;
-    const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
     PipelineState state(pipeline);
     for (int frame = 0; frame < 40; ++frame) {
       const FrameReport once = step(pipeline, state, frame, nullptr),
@@ -149,7 +149,7 @@ TEST(HardMotion, StepsMayRunBackwardsWithoutLosingTheBoundOrGrowing) {
   RegulatorOptions options;
   options.geometric_px = kBound_px;
   const Stage stage = fleet(5, 4, options);
-  const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
   PipelineState state(pipeline);
   int reuses = 0;
   for (int frame = 100; frame >= 0; --frame) {
@@ -186,12 +186,12 @@ TEST(HardMotion, OptionsMayChangeOnTheWay) {
   options.insert(options.begin(), budget);
   Stage stage = fleet(5, 4, budget);
   stage.settings.frames = 60;
-  PipelineState state(Pipeline(stage.scene, stage.layers, stage.settings));
+  PipelineState state(make_pipeline(stage.scene, stage.layers, stage.settings));
   const chunker::PreparedScene prepared(stage.scene);
   int coarse = 0;
   for (int frame = 0; frame < 60; ++frame) {
     stage.settings.regulator = options[frame / 12];
-    const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
     const FrameReport report = step(pipeline, state, frame, frame % 6 == 5 ? &prepared : nullptr);
     for (const regulator::LayerDecision& d : report.plan.decisions) {
       coarse += frame < 12 && d.resolution < 0.7;
@@ -208,14 +208,14 @@ TEST(HardMotion, OptionsThatChangeAndComeBackDoNotChangeTheFrame) {
   options.geometric_px = 1;
   Stage stage = fleet(5, 4, options);
   const auto plain = stage.run(24, false);
-  PipelineState state(Pipeline(stage.scene, stage.layers, stage.settings));
+  PipelineState state(make_pipeline(stage.scene, stage.layers, stage.settings));
   for (int frame = 0; frame < 24; ++frame) {
     // Frames from afar are captured under other options in between.
-    const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
     const FrameReport report = step(pipeline, state, frame, nullptr);
     for (std::size_t i = 0; i < 5; ++i)
-      EXPECT_EQ(json_of(pipeline, report, report.plan.decisions[i]),
-                json_of(pipeline, plain[frame], plain[frame].plan.decisions[i]));
+      EXPECT_EQ(json_of(report, report.plan.decisions[i]),
+                json_of(plain[frame], plain[frame].plan.decisions[i]));
     state.planned_with = RegulatorOptions{};
     state.planned_with->policy = Policy::Oracle;
   }
@@ -228,7 +228,7 @@ TEST(HardMotion, TenThousandFramesOfALoopNeitherDriftNorGrow) {
   Stage stage(tests::fleet_scene(3, 6, 1.0));
   stage.settings.fps = kPeriod;
   stage.settings.regulator.geometric_px = kBound_px;
-  const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
   PipelineState state(pipeline);
   struct Line {
     Action action;

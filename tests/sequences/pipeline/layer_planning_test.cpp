@@ -27,14 +27,14 @@ constexpr int kCube = 1;
 TEST(AssessSprite, EmptySpriteIsNeverGoodEnoughForWhatIsInViewNow) {
   // Its points match well, so without the rule the optimiser would show nothing at no error.
   const Planning p;
-  const Pipeline pipeline(p.scene, p.layers, p.settings);
+  const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
   PipelineState state(pipeline);
   const layers::LayerState& then = captured_states(pipeline, state, 3)[kCube];
   const layers::LayerState& now = captured_states(pipeline, state, 4)[kCube];
   regulator::RegulatorOptions lenient;
   lenient.geometric_px = 1e6;
   const auto violation = [&](const layers::SpritePlacement& placement, const layers::LayerState& shown) {
-    return regulator::violation_of(assess_sprite(pipeline, then, placement, shown, 1), lenient);
+    return regulator::violation_of(assess_sprite(pipeline, state.layers, then, placement, shown, 1), lenient);
   };
   EXPECT_EQ(violation(captured_placement(pipeline, state, kCube, 3), now), "");
   EXPECT_EQ(violation({}, now), "matched points 0 < 3");
@@ -44,7 +44,7 @@ TEST(AssessSprite, EmptySpriteIsNeverGoodEnoughForWhatIsInViewNow) {
 TEST(StatesAt, AreCapturedOnceAndForgottenWhenTheirFrameIsPast) {
   Planning p;
   p.settings.regulator.policy = regulator::Policy::Lookahead;  // keeps what is ahead
-  const Pipeline pipeline(p.scene, p.layers, p.settings);
+  const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
   PipelineState state(pipeline);
   begin_frame(pipeline, state, 2);
   const layers::LayerState* first = captured_states(pipeline, state, 7).data();
@@ -59,7 +59,7 @@ TEST(StatesAt, ARunKeepsFewFramesInMemoryUnlessItLooksAhead) {
   Planning p;
   for (const auto policy : {regulator::Policy::Threshold, regulator::Policy::Budget}) {
     p.settings.regulator.policy = policy;
-    const Pipeline pipeline(p.scene, p.layers, p.settings);
+    const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
     PipelineState state(pipeline);
     for (int frame = 0; frame < 20; ++frame) {
       step(pipeline, state, frame, nullptr);
@@ -70,7 +70,7 @@ TEST(StatesAt, ARunKeepsFewFramesInMemoryUnlessItLooksAhead) {
 
 TEST(PlacementAt, IsTheSameWhenAskedAgain) {
   const Planning p;
-  const Pipeline pipeline(p.scene, p.layers, p.settings);
+  const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
   PipelineState once(pipeline), again(pipeline);
   const layers::SpritePlacement before = captured_placement(pipeline, once, kCube, 5);
   captured_placement(pipeline, again, kCube, 9);
@@ -87,7 +87,7 @@ TEST(ChooseDrawInstant, LiesInTheWindowAndTheOracleIsNeverShorter) {
     for (const int lookahead : {0, 2, 8, 32}) {
       p.settings.regulator.policy = regulator::Policy::Lookahead;
       p.settings.regulator.lookahead_frames = lookahead;
-      const Pipeline pipeline(p.scene, p.layers, p.settings);
+      const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
       PipelineState state(pipeline);
       const regulator::FrameRun run = choose_draw_instant(pipeline, state, kCube, frame);
       EXPECT_EQ(run.first, frame);
@@ -97,7 +97,7 @@ TEST(ChooseDrawInstant, LiesInTheWindowAndTheOracleIsNeverShorter) {
       before = run.frames();
     }
     p.settings.regulator.policy = regulator::Policy::Oracle;
-    const Pipeline pipeline(p.scene, p.layers, p.settings);
+    const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
     PipelineState state(pipeline);
     EXPECT_GE(choose_draw_instant(pipeline, state, kCube, frame).frames(), before);
   }

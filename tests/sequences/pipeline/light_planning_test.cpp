@@ -56,7 +56,7 @@ struct Dimming {
   std::vector<FrameReport> run(Policy policy, bool draw = true) const {
     Settings of_run = settings;
     of_run.regulator.policy = policy;
-    const Pipeline pipeline(scene, layers, of_run);
+    const Pipeline pipeline = make_pipeline(scene, layers, of_run);
     const chunker::PreparedScene prepared(scene);
     PipelineState state(pipeline);
     std::vector<FrameReport> reports;
@@ -139,8 +139,8 @@ TEST(ColorWarp, ReasonNamesTheLight) {
 TEST(ColorWarp, NotCalledForNothingIsComputed) {
   const layers::Scene scene = tests::textured_quad_scene();
   const layers::LayerSet layers = layers::factor(scene, tests::one_layer_per_part(scene));
-  const Pipeline pipeline(scene, layers, Settings{});
-  EXPECT_FALSE(pipeline.bounds[0].surface);
+  const Pipeline pipeline = make_pipeline(scene, layers, Settings{});
+  EXPECT_FALSE(pipeline.authored.bound(0).surface);
   PipelineState state(pipeline);
   step(pipeline, state, 0, nullptr);
   const FrameReport report = step(pipeline, state, 1, nullptr);
@@ -157,7 +157,7 @@ TEST(ColorWarp, PoliciesThatDoNotWarpDoNotFollowTheLight) {
   for (const Policy policy : {Policy::Reference, Policy::Hold, Policy::Direct}) {
     Dimming stage;
     stage.settings.regulator.policy = policy;
-    EXPECT_FALSE(Pipeline(stage.scene, stage.layers, stage.settings).bounds[0].surface);
+    EXPECT_FALSE(make_pipeline(stage.scene, stage.layers, stage.settings).authored.bound(0).surface);
     for (const FrameReport& report : stage.run(policy, false))
       EXPECT_EQ(report.plan.decisions[0].shown_color, dvec3(1, 1, 1));
   }
@@ -165,10 +165,10 @@ TEST(ColorWarp, PoliciesThatDoNotWarpDoNotFollowTheLight) {
 
 TEST(ColorWarp, DecisionsSayTheColourAndTheFiducial) {
   Dimming stage;
-  const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
   const auto reports = stage.run(Policy::Threshold, false);
   const auto json =
-      nlohmann::json::parse(json_of(pipeline, reports.back(), reports.back().plan.decisions[0]));
+      nlohmann::json::parse(json_of(reports.back(), reports.back().plan.decisions[0]));
   EXPECT_NEAR(json["color"][0], 0.3, 1e-6);
   const auto& photometric = json["fiducials"]["photometric"];
   EXPECT_LT(photometric["color"], 0.01);
@@ -225,7 +225,7 @@ TEST(TurnedFaces, AreRegulatedOnRequest) {
   settings.regulator.uncovered_px = -1;
   const auto renders_at = [&](double turned_px) {
     settings.regulator.turned_px = turned_px;
-    const Pipeline pipeline(scene, layers, settings);
+    const Pipeline pipeline = make_pipeline(scene, layers, settings);
     PipelineState state(pipeline);
     int n = 0;
     for (int frame = 0; frame < 60; ++frame)

@@ -24,10 +24,10 @@ struct Fleet {
 };
 
 /// The members and the name of the aggregates of a frame.
-std::map<std::vector<int>, std::string> merged_in(const Pipeline& pipeline, const FrameReport& report) {
+std::map<std::vector<int>, std::string> merged_in(const FrameReport& report) {
   std::map<std::vector<int>, std::string> merged;
   for (const Merger& merger : report.order.mergers) {
-    const layers::Layer& layer = pipeline.layers.layers[merger.layer];
+    const layers::Layer& layer = report.layers[merger.layer];
     merged[layer.members] = layer.name;
   }
   return merged;
@@ -35,20 +35,19 @@ std::map<std::vector<int>, std::string> merged_in(const Pipeline& pipeline, cons
 
 TEST(LongRun, IdsOfAggregatesThatAreGoneAreUsedAgain) {
   const Fleet fleet;
-  const Pipeline pipeline(fleet.scene, fleet.layers, fleet.settings);
+  const Pipeline pipeline = make_pipeline(fleet.scene, fleet.layers, fleet.settings);
   PipelineState state(pipeline);
   std::map<std::vector<int>, int> last_seen;  // as if nothing were forgotten
   std::size_t most_kept = 0;
   for (int frame = 0; frame < Fleet::kFrames; ++frame) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
-    const Pipeline& grown = with_aggregates(pipeline, state);
-    for (const auto& [members, name] : merged_in(grown, report)) last_seen[members] = frame;
+    for (const auto& [members, name] : merged_in(report)) last_seen[members] = frame;
     std::size_t kept = 0;
     for (const auto& [members, seen] : last_seen) kept += seen + kKeepAggregate_frames >= frame;
     most_kept = std::max(most_kept, kept);
-    ASSERT_EQ(grown.layers.layers.size(), fleet.layers.layers.size() + state.order.slots.size());
-    ASSERT_EQ(state.memory.size(), grown.layers.layers.size());
-    ASSERT_EQ(report.plan.decisions.size(), grown.layers.layers.size());
+    ASSERT_EQ(report.layers.size(), fleet.layers.layers.size() + state.order.slots.size());
+    ASSERT_EQ(state.memory.size(), report.layers.size());
+    ASSERT_EQ(report.plan.decisions.size(), report.layers.size());
   }
   EXPECT_EQ(state.order.history.records.size(), last_seen.size());
   EXPECT_EQ(state.order.slots.size(), most_kept);
@@ -59,7 +58,7 @@ TEST(LongRun, IdsOfAggregatesThatAreGoneAreUsedAgain) {
 // that shows other layers.
 TEST(LongRun, NamesAndSpritesAreThoseOfTheMembers) {
   const Fleet fleet;
-  const Pipeline pipeline(fleet.scene, fleet.layers, fleet.settings);
+  const Pipeline pipeline = make_pipeline(fleet.scene, fleet.layers, fleet.settings);
   PipelineState state(pipeline);
   std::map<std::vector<int>, std::string> names;
   std::map<std::vector<int>, int> last_seen;
@@ -67,9 +66,8 @@ TEST(LongRun, NamesAndSpritesAreThoseOfTheMembers) {
   int forgotten = 0;
   for (int frame = 0; frame < Fleet::kFrames; ++frame) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
-    const Pipeline& grown = with_aggregates(pipeline, state);
     for (const Merger& merger : report.order.mergers) {
-      const layers::Layer& layer = grown.layers.layers[merger.layer];
+      const layers::Layer& layer = report.layers[merger.layer];
       ASSERT_EQ(names.try_emplace(layer.members, layer.name).first->second, layer.name) << frame;
       ASSERT_EQ(owners.try_emplace(layer.name, layer.members).first->second, layer.members) << frame;
       const bool is_new = last_seen.count(layer.members) == 0;
@@ -89,19 +87,18 @@ TEST(LongRun, NamesAndSpritesAreThoseOfTheMembers) {
 
 TEST(LongRun, TheSummaryListsEveryAggregateThatExisted) {
   const Fleet fleet;
-  const Pipeline pipeline(fleet.scene, fleet.layers, fleet.settings);
+  const Pipeline pipeline = make_pipeline(fleet.scene, fleet.layers, fleet.settings);
   PipelineState state(pipeline);
   Summary summary = start_summary(pipeline, "fleet");
   std::map<std::string, int> shown;  // frames, by name
   std::vector<std::string> in_order;
   for (int frame = 0; frame < 300; ++frame) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
-    const Pipeline& grown = with_aggregates(pipeline, state);
-    add_decisions(summary, grown, report, state);
+    add_decisions(summary, report, state);
     for (const regulator::LayerDecision& decision : report.plan.decisions)
-      shown[grown.layers.layers[decision.layer].name] += decision.action != regulator::Action::Drop;
+      shown[report.layers[decision.layer].name] += decision.action != regulator::Action::Drop;
     for (const auto& merger : report.order.mergers) {
-      const std::string& name = grown.layers.layers[merger.layer].name;
+      const std::string& name = report.layers[merger.layer].name;
       if (std::find(in_order.begin(), in_order.end(), name) == in_order.end()) in_order.push_back(name);
     }
     const std::vector<int> lines = layers_with_lines(state, report);

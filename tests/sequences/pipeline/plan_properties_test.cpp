@@ -143,9 +143,9 @@ TEST(PlanBudget, LayerDearerThanAllPixelsIsDrawnInTheEndWithoutSpendingMore) {
   RegulatorOptions ample = within(kNoLimit, 1'000'000), scarce = within(kNoLimit, 150);
   const Stage stage = fleet(1, 5, ample);
   Settings settings = stage.settings;
-  const Pipeline rich(stage.scene, stage.layers, settings);
+  const Pipeline rich = make_pipeline(stage.scene, stage.layers, settings);
   settings.regulator = scarce;
-  const Pipeline poor(stage.scene, stage.layers, settings);
+  const Pipeline poor = make_pipeline(stage.scene, stage.layers, settings);
   PipelineState state(rich);
   ASSERT_GT(step(rich, state, 0, nullptr).plan.decisions[0].cost.pixels, 750);
   int first_render = -1;
@@ -165,9 +165,9 @@ TEST(PlanBudget, SceneAtRestIsSharpenedUntilNothingIsLeftToGain) {
   Stage stage(tests::cube_scene());
   stage.settings.view.display_px = {320, 240};
   stage.settings.regulator = within(kNoLimit, 2000);  // the cube takes about 5500 at full resolution
-  const Pipeline poor(stage.scene, stage.layers, stage.settings);
+  const Pipeline poor = make_pipeline(stage.scene, stage.layers, stage.settings);
   stage.settings.regulator = within(kNoLimit, 100'000);
-  const Pipeline rich(stage.scene, stage.layers, stage.settings);
+  const Pipeline rich = make_pipeline(stage.scene, stage.layers, stage.settings);
   PipelineState state(poor);
   const double coarse = step(poor, state, 0, nullptr).plan.decisions[0].resolution;
   EXPECT_LT(coarse, 0.7);
@@ -188,7 +188,7 @@ TEST(PlanBudget, GapIsReportedOnlyWhenAskedForAndChangesNoDecision) {
   const auto plain = stage.run(24, false);
   stage.settings.budget_gap = true;
   const auto with_gap = stage.run(24, false);
-  const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
   double most = 0;
   for (int frame = 0; frame < 24; ++frame) {
     EXPECT_FALSE(plain[frame].budget_gap.has_value());
@@ -198,9 +198,9 @@ TEST(PlanBudget, GapIsReportedOnlyWhenAskedForAndChangesNoDecision) {
     EXPECT_GE(gap.optimal_px, gap.greedy_px);
     most = std::max(most, gap.gap());
     for (std::size_t i = 0; i < plain[frame].plan.decisions.size(); ++i)
-      EXPECT_EQ(json_of(pipeline, plain[frame], plain[frame].plan.decisions[i]),
-                json_of(pipeline, with_gap[frame], with_gap[frame].plan.decisions[i]));
-    const FrameLine line = line_of(pipeline, with_gap[frame]);
+      EXPECT_EQ(json_of(plain[frame], plain[frame].plan.decisions[i]),
+                json_of(with_gap[frame], with_gap[frame].plan.decisions[i]));
+    const FrameLine line = line_of(with_gap[frame]);
     const auto read = frame_line_from_json(json_of(line));
     ASSERT_TRUE(read && read->budget_gap);
     EXPECT_EQ(read->budget_gap->optimal_px, gap.optimal_px) << "--resume reads it back";
@@ -261,7 +261,7 @@ TEST(PlanOracle, EqualsEveryWayToCutATinySequence) {
     stage.settings.fps = 8;  // fast, so that there is something to choose
     stage.settings.frames = kTiny;
     const auto reports = stage.run(kTiny, false);
-    const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
     PipelineState state(pipeline);
     for (int layer = 0; layer < 3; ++layer) {
       bool always_in_view = true;
@@ -275,7 +275,7 @@ TEST(PlanOracle, EqualsEveryWayToCutATinySequence) {
       for (int r = 0; r < kTiny; ++r)
         for (int f = 0; f < kTiny; ++f)
           serves[r][f] =
-              regulator::violation_of(assess_sprite(pipeline, captured_states(pipeline, state, r)[layer],
+              regulator::violation_of(assess_sprite(pipeline, state.layers, captured_states(pipeline, state, r)[layer],
                                                     captured_placement(pipeline, state, layer, r),
                                                     captured_states(pipeline, state, f)[layer], 0),
                                       stage.settings.regulator)
@@ -331,7 +331,7 @@ TEST(PlanPredicted, SpriteOfAnExpectedInstantIsTheSameDrawnAtOnceOrLate) {
   Stage stage = fleet(4, 2, bounded(Policy::Lookahead, 1, 6, regulator::Prediction::Linear));
   stage.settings.frames = 20;
   const auto at_once = stage.run(20, true);
-  const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
   const chunker::PreparedScene prepared(stage.scene);
   PipelineState state(pipeline);
   int late = 0;

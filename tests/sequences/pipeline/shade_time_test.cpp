@@ -251,7 +251,7 @@ Displacement displacement(const Room& room, double geometric_px, int frames) {
   settings.view.display_px = {160, 120};
   settings.regulator.geometric_px = geometric_px;
   settings.frames = frames;
-  const Pipeline pipeline(room.scene, set, settings);
+  const Pipeline pipeline = make_pipeline(room.scene, set, settings);
   PipelineState state(pipeline);
   Displacement result;
   for (int frame = 0; frame < frames; ++frame) {

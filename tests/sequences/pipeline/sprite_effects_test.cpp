@@ -38,7 +38,7 @@ struct Film {
     return *this;
   }
   std::vector<FrameReport> reports() const {
-    const Pipeline pipeline(scene, layers, settings);
+    const Pipeline pipeline = make_pipeline(scene, layers, settings);
     const chunker::PreparedScene prepared(scene);
     PipelineState state(pipeline);
     std::vector<FrameReport> all;
@@ -63,7 +63,7 @@ int largest_difference(const chunker::Frame& a, const chunker::Frame& b) {
 TEST(SpriteCompressionInARun, NothingOfItExistsUnlessItIsAskedFor) {
   const Film run(Policy::Threshold);
   for (const FrameReport& report : run.reports()) EXPECT_FALSE(report.compression);
-  const Pipeline pipeline(run.scene, run.layers, run.settings);
+  const Pipeline pipeline = make_pipeline(run.scene, run.layers, run.settings);
   const Summary summary = start_summary(pipeline, "test");
   const auto& entry = summary.effects.at(static_cast<std::size_t>(layers::Effect::SpriteCompression));
   EXPECT_EQ(layers::name(entry.effect), "sprite_compression");
@@ -110,11 +110,11 @@ TEST(MotionBlur, FasterLayersAreSampledLessDenselyAndNeverBelowASixteenth) {
   slow.blurred(0.1);
   fast.blurred(1);
   fast.settings.fps = slow.settings.fps = 4;  // long frames: fast motion
-  const Pipeline a(slow.scene, slow.layers, slow.settings), b(fast.scene, fast.layers, fast.settings);
+  const Pipeline a = make_pipeline(slow.scene, slow.layers, slow.settings), b = make_pipeline(fast.scene, fast.layers, fast.settings);
   PipelineState state(a);
   bool some_blur = false;
   for (const layers::LayerState& now : captured_states(a, state, 3)) {
-    const MotionSampling little = motion_sampling(a, now), much = motion_sampling(b, now);
+    const MotionSampling little = motion_sampling(a, a.authored, now), much = motion_sampling(b, b.authored, now);
     EXPECT_LE(much.density, little.density);
     EXPECT_GE(much.density, 1.0 / 16);
     some_blur = some_blur || much.density < 0.5;
@@ -127,31 +127,31 @@ TEST(MotionBlur, AtRestThereIsNone) {
   layers::LayerSet set = layers::factor(scene, tests::one_layer_per_part(scene));
   set.layers[0].preferences.motion_blur = 1;
   Settings settings;
-  const Pipeline pipeline(scene, set, settings);
+  const Pipeline pipeline = make_pipeline(scene, set, settings);
   PipelineState state(pipeline);
-  EXPECT_EQ(motion_sampling(pipeline, captured_states(pipeline, state, 0)[0]).density, 1);
+  EXPECT_EQ(motion_sampling(pipeline, state.layers, captured_states(pipeline, state, 0)[0]).density, 1);
 }
 
 TEST(MotionBlur, BlurThatIsNotThatOfNowCountsAsSampling) {
   Film run(Policy::Threshold);
   run.blurred(1);
   run.settings.fps = 4;
-  const Pipeline pipeline(run.scene, run.layers, run.settings);
+  const Pipeline pipeline = make_pipeline(run.scene, run.layers, run.settings);
   PipelineState state(pipeline);
   bool some_differ = false;
   for (int layer = 0; layer < 3; ++layer)
     for (int frame = 0; frame < 8; ++frame) {
       const layers::LayerState& then = captured_states(pipeline, state, frame)[layer];
       const layers::LayerState& now = captured_states(pipeline, state, frame + 4)[layer];
-      const double ratio = motion_sampling(pipeline, now).density / motion_sampling(pipeline, then).density;
+      const double ratio = motion_sampling(pipeline, state.layers, now).density / motion_sampling(pipeline, state.layers, then).density;
       regulator::LayerAssessment other, same;
       same.identical = other.identical = true;
-      judge_motion_blur(pipeline, then, now, other);
+      judge_motion_blur(pipeline, state.layers, then, now, other);
       EXPECT_EQ(other.fiducials.sampling.magnification, std::max(1.0, ratio));
       EXPECT_EQ(other.fiducials.sampling.minification, std::min(1.0, ratio));
       EXPECT_TRUE(ratio == 1 || !other.identical);
       some_differ = some_differ || ratio != 1;
-      judge_motion_blur(pipeline, then, then, same);
+      judge_motion_blur(pipeline, state.layers, then, then, same);
       EXPECT_TRUE(same.identical);
       EXPECT_EQ(same.fiducials.sampling.magnification, 1);
     }

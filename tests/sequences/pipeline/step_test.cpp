@@ -27,11 +27,11 @@ std::vector<std::string> hashes_of(const std::vector<FrameReport>& reports) {
 }
 
 std::vector<std::string> decisions_of(const Stage& stage, const std::vector<FrameReport>& reports) {
-  const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
   std::vector<std::string> lines;
   for (const FrameReport& report : reports)
     for (const regulator::LayerDecision& decision : report.plan.decisions)
-      lines.push_back(json_of(pipeline, report, decision));
+      lines.push_back(json_of(report, decision));
   return lines;
 }
 
@@ -94,7 +94,7 @@ TEST(Step, FrameDrawnAfterPlanningOnlyHasTheSameBytes) {
   for (const Stage& stage : fiducial_policies()) {
     SCOPED_TRACE(std::string(regulator::name(stage.settings.regulator.policy)));
     const auto all = stage.run(kFrames, true);
-    const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
     const chunker::PreparedScene prepared(stage.scene);
     PipelineState state(pipeline);
     int late_renders = 0;
@@ -280,7 +280,7 @@ TEST(Step, CountersAddUpFromLayersToFrame) {
 
 TEST(Step, DrawingTheTruthsDoesNotDisturbTheRun) {
   const Stage stage = Stage(tests::moving_scene()).policy(Policy::Reference);
-  const Pipeline pipeline(stage.scene, stage.layers, stage.settings);
+  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
   const chunker::PreparedScene prepared(stage.scene);
   const auto reports = stage.run(4, true);
   EXPECT_EQ(hash_of(draw_reference(pipeline, 3, prepared)), hash_of(reports[3].picture));
@@ -294,7 +294,7 @@ TEST(Step, NoLayersShowTheBackground) {
   const layers::LayerSet none;
   Settings settings;
   settings.view.display_px = {5, 3};
-  const Pipeline pipeline(scene, none, settings);
+  const Pipeline pipeline = make_pipeline(scene, none, settings);
   const chunker::PreparedScene prepared(scene);
   PipelineState state(pipeline);
   const FrameReport report = step(pipeline, state, 0, &prepared);

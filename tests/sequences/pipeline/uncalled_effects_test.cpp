@@ -24,15 +24,14 @@ constexpr int kFrames = 8;
 struct WholeRun {
   explicit WholeRun(Variant given)
       : variant(std::move(given)),
-        pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings),
+        pipeline(make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings)),
         prepared(*variant.sequence.scene, variant.settings.render),
         state(pipeline),
         summary(start_summary(pipeline, "all")) {
     for (int frame = 0; frame < kFrames; ++frame) {
       reports.push_back(step(pipeline, state, frame, &prepared));
-      const Pipeline& grown = with_aggregates(pipeline, state);
-      add_decisions(summary, grown, reports.back(), state);
-      summary.frames.push_back(line_of(grown, reports.back()));
+      add_decisions(summary, reports.back(), state);
+      summary.frames.push_back(line_of(reports.back()));
     }
   }
 
@@ -72,7 +71,7 @@ double traces_of(const WholeRun& run, layers::ShadeTrace::Kind kind) {
 Numbers of_shade_layers(const WholeRun& run, LayerKind kind) {
   Numbers n;
   double &layers = n["layers"], &renders = n["renders"], &sprites = n["sprites"];
-  for (const layers::Layer& layer : run.pipeline.layers.layers) {
+  for (const layers::Layer& layer : run.pipeline.authored) {
     if (layer.kind != kind) continue;
     ++layers;
     renders += run.summary.layers[layer.id].renders;
@@ -121,8 +120,8 @@ Numbers of_visibility_sort(const WholeRun& run) {
 
 Numbers of_color_warp(const WholeRun& run) {
   double surfaces = 0;
-  for (std::size_t id = 0; id < run.pipeline.bounds.size(); ++id)
-    surfaces += run.pipeline.bounds[id].surface.has_value();
+  for (std::size_t id = 0; id < run.pipeline.authored.size(); ++id)
+    surfaces += run.pipeline.authored.bound(id).surface.has_value();
   return {{"mean surfaces", surfaces},
           {"fiducials computed", sum_over(run,
                                           [](auto& r) {
@@ -174,8 +173,7 @@ Numbers numbers_of(const WholeRun& run, Effect effect) {
       return {{"lights captured", sum_over_states(run, [](auto& s) { return s.lights.size(); })}};
     case Effect::Skinning:
       return {{"joints captured", sum_over_states(run, [&](auto& s) {
-                 const Pipeline& grown = with_aggregates(run.pipeline, run.state);
-                 return s.world_from_part.size() - grown.layers.layers[s.layer].parts.size();
+                 return s.world_from_part.size() - run.state.layers[s.layer].parts.size();
                })}};
     case Effect::SpriteCompression:
       return of_compression(run);

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/pipeline/make_pipeline.h"
+
+#include <utility>
+
+#include "layers/animation.h"
+#include "layers/effects.h"
+#include "layers/polyhedron.h"
+#include "sequences/pipeline/light_planning.h"
+
+namespace talisman::sequences {
+
+Pipeline make_pipeline(const layers::Scene& scene, layers::LayerSet layers, const Settings& settings) {
+  Pipeline pipeline{scene, settings, {}, {}, layers::calls_for_visibility_sort(layers.layers)};
+  if (regulator::follows_light(settings.regulator)) pipeline.moving_carriers = layers::moving_carriers(scene);
+  BoundTable bounds;
+  for (const layers::Layer& layer : layers.layers)
+    bounds.put(layer.id, following_light_and_faces(pipeline, layer,
+                                                   layers::make_layer_bound(scene, layer, settings.bound)));
+  pipeline.authored = {std::move(layers), std::move(bounds)};
+  return pipeline;
+}
+
+}  // namespace talisman::sequences
