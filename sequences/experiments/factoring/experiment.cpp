@@ -10,6 +10,7 @@
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/shade_passes.h"
+#include "sequences/pipeline/step.h"
 
 namespace talisman::sequences {
 namespace {
