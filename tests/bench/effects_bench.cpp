@@ -30,6 +30,7 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "sequences/commands/missing_effects.h"
+#include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 #include "tests/support/sequences.h"
 

@@ -14,6 +14,7 @@
 
 #include "layers/layer.h"
 #include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/step.h"
 #include "tests/support/fleet.h"
 #include "tests/support/scenes.h"
 

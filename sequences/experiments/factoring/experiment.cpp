@@ -9,6 +9,7 @@
 #include "layers/check.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/shade_passes.h"
+#include "sequences/pipeline/step.h"
 
 namespace talisman::sequences {
 namespace {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "layers/check.h"
+#include "sequences/pipeline/step.h"
 
 namespace talisman::sequences {
 namespace {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {

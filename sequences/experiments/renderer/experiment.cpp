@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "sequences/experiments/regulator/report.h"
+#include "sequences/pipeline/step.h"
 
 namespace talisman::sequences {
 namespace {

@@ -11,6 +11,7 @@
 #include "layers/check.h"
 #include "sequences/experiments/statistics.h"
 #include "sequences/pictures/diff.h"
+#include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/step.h"
 #include "tests/support/sequences.h"
 
 namespace talisman::sequences {

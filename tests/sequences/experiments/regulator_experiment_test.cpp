@@ -13,6 +13,7 @@
 #include "sequences/experiments/regulator/lookahead_curve.h"
 #include "sequences/experiments/regulator/report.h"
 #include "sequences/pictures/diff.h"
+#include "sequences/pipeline/step.h"
 #include "tests/support/sequences.h"
 
 namespace talisman::sequences {

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 
 #include "sequences/files/image_io.h"
+#include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 #include "tests/support/room.h"
 #include "tests/support/sequences.h"

@@ -11,6 +11,7 @@
 
 #include "sequences/commands/options.h"
 #include "sequences/files/image_io.h"
+#include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {

@@ -12,6 +12,7 @@
 
 #include "sequences/commands/options.h"
 #include "sequences/pipeline/resolved_cycles.h"
+#include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 #include "tests/sequences/temporary_folder.h"
 

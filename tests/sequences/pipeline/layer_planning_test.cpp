@@ -6,6 +6,7 @@
 
 #include "regulator/policies.h"
 #include "sequences/pipeline/draw_instant.h"
+#include "sequences/pipeline/step.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {

@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/commands/options.h"
+#include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 #include "tests/sequences/temporary_folder.h"
 #include "tests/support/scenes.h"

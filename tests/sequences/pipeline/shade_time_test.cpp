@@ -11,6 +11,7 @@
 
 #include "sequences/commands/accuracy_factoring.h"
 #include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/step.h"
 #include "tests/sequences/room_sequence.h"
 
 namespace talisman::sequences {
