@@ -379,8 +379,7 @@ void explain_order(FrameReport& report) {
     }
     const int into = report.order.merged_into[layer.id], from = report.order.split_from[layer.id];
     if (into >= 0)
-      decision.reason =
-          "merged into " + report.layers[into].name + ": " + report.order.merger(into)->why;
+      decision.reason = "merged into " + report.layers[into].name + ": " + report.order.merger(into)->why;
     else if (from >= 0 && decision.action != regulator::Action::Drop)
       decision.reason = "split from " + report.layers[from].name + ": " + decision.reason;
     if (const ResolvedCycle* cycle = report.order.resolved_with(layer.id))

@@ -24,8 +24,8 @@ class Judge {
     const layers::LayerState& then = captured_states(pipeline_, state_, instant)[layer_];
     if (!then.touches_display) return false;  // nothing to draw
     const regulator::LayerAssessment assessment =
-        assess_sprite(pipeline_, state_.layers, then, captured_placement(pipeline_, state_, layer_, instant), now,
-                      frame - frame_rendered_);
+        assess_sprite(pipeline_, state_.layers, then, captured_placement(pipeline_, state_, layer_, instant),
+                      now, frame - frame_rendered_);
     return regulator::violation_of(assessment, pipeline_.settings.regulator).empty();
   }
 

@@ -37,8 +37,8 @@ double own_resolution(const Layer& layer) {
 
 /// Extents grow by velocity × `expected_reuse`; `soon` is the state one frame later. `resolution` is
 /// relative to what the layer's author asks for.
-SpritePlacement place_layer(const Pipeline& pipeline, const LayerTable& layers, const LayerState& now, const LayerState& soon,
-                            double expected_reuse, double resolution = 1) {
+SpritePlacement place_layer(const Pipeline& pipeline, const LayerTable& layers, const LayerState& now,
+                            const LayerState& soon, double expected_reuse, double resolution = 1) {
   const Layer& layer = layers[now.layer];
   layers::ExtentOptions extents = pipeline.settings.extents;
   extents.expected_reuse_frames = expected_reuse * layer.preferences.share_of_expected_motion;
@@ -74,8 +74,8 @@ SpritePlacement place_regulated(const Pipeline& pipeline, PipelineState& state, 
   const LayerState& now = captured_states(pipeline, state, frame)[layer];
   const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
   if (!(expected_reuse > 0)) return place_layer(pipeline, state.layers, now, now, 0, resolution);
-  return place_layer(pipeline, state.layers, now, captured_states(pipeline, state, frame + 1)[layer], expected_reuse,
-                     resolution);
+  return place_layer(pipeline, state.layers, now, captured_states(pipeline, state, frame + 1)[layer],
+                     expected_reuse, resolution);
 }
 
 /// Sampling is judged by the texels that the layer's author asks for, not by the coarser ones of a sprite
@@ -205,7 +205,8 @@ void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
   }
 }
 
-SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTable& layers, const LayerState& now) {
+SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTable& layers,
+                                         const LayerState& now) {
   return place_layer(pipeline, layers, now, now, 0);
 }
 
@@ -253,8 +254,8 @@ LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int
   const LayerState& now = captured_states(pipeline, state, frame)[layer_id];
   LayerAssessment assessment;
   if (now.touches_display && memory.then)
-    assessment =
-        assess_sprite(pipeline, state.layers, *memory.then, memory.placement, now, std::abs(frame - memory.frame_rendered));
+    assessment = assess_sprite(pipeline, state.layers, *memory.then, memory.placement, now,
+                               std::abs(frame - memory.frame_rendered));
   assessment.layer = layer.id;
   assessment.frames_short_of_area = memory.frames_short_of_area;
   see_through_resolution(assessment, memory.resolution);

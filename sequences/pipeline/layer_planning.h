@@ -44,12 +44,14 @@ void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
                      std::vector<regulator::LayerAssessment>& assessments);
 
 /// The same without growth: as the policy `reference` draws it.
-layers::SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now);
+layers::SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTable& layers,
+                                                 const layers::LayerState& now);
 
 regulator::LayerCost cost_of(const layers::Layer& layer, layers::ivec2 size_px);
 
 /// What showing at `now` the sprite as rendered at `then` with `placement` is worth. The layer is in view.
-regulator::LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& then,
+regulator::LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers,
+                                         const layers::LayerState& then,
                                          const layers::SpritePlacement& placement,
                                          const layers::LayerState& now, int frames_since_render);
 

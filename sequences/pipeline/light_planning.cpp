@@ -34,8 +34,9 @@ layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const lay
   return bound;
 }
 
-void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerBound& bound, const layers::LayerState& then,
-                            const layers::LayerState& now, fiducials::Report& report) {
+void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerBound& bound,
+                            const layers::LayerState& then, const layers::LayerState& now,
+                            fiducials::Report& report) {
   report.photometric =
       fiducials::photometric_of(then, now, bound, {.color_warp = pipeline.settings.regulator.color_warp});
   if (report.photometric.computed) {

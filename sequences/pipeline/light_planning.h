@@ -18,7 +18,8 @@ layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const lay
                                              layers::LayerBound bound);
 
 /// Fills in Report::photometric, with the names of the lights, and Report::turned. `bound` is the layer's.
-void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerBound& bound, const layers::LayerState& then,
-                            const layers::LayerState& now, fiducials::Report& report);
+void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerBound& bound,
+                            const layers::LayerState& then, const layers::LayerState& now,
+                            fiducials::Report& report);
 
 }  // namespace talisman::sequences

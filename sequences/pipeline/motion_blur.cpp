@@ -21,7 +21,8 @@ layers::dvec2 mean_motion(const layers::Correspondences& matched) {
 
 }  // namespace
 
-MotionSampling motion_sampling(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now) {
+MotionSampling motion_sampling(const Pipeline& pipeline, const LayerTable& layers,
+                               const layers::LayerState& now) {
   const layers::Layer& layer = layers[now.layer];
   const layers::LayerBound& bound = layers.bound(now.layer);
   const int next = static_cast<int>(std::lround(now.time_s * pipeline.settings.fps)) + 1;
@@ -45,7 +46,8 @@ void apply_motion_blur(const Pipeline& pipeline, const LayerTable& layers, const
 
 void judge_motion_blur(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& then,
                        const layers::LayerState& now, regulator::LayerAssessment& assessment) {
-  const MotionSampling before = motion_sampling(pipeline, layers, then), wanted = motion_sampling(pipeline, layers, now);
+  const MotionSampling before = motion_sampling(pipeline, layers, then),
+                       wanted = motion_sampling(pipeline, layers, now);
   const bool same_blur =
       before.density == wanted.density && (wanted.density == 1 || before.motion_px == wanted.motion_px);
   assessment.identical = assessment.identical && same_blur;

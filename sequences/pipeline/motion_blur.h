@@ -21,7 +21,8 @@ struct MotionSampling {
 };
 
 /// Cost: the capture of the layer one frame later (some µs, scene.at included).
-MotionSampling motion_sampling(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now);
+MotionSampling motion_sampling(const Pipeline& pipeline, const LayerTable& layers,
+                               const layers::LayerState& now);
 
 /// Adds the blur of the layer at `now` to the options of its placement.
 void apply_motion_blur(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now,

@@ -35,8 +35,8 @@ struct AggregateSlot {
 /// What is remembered of the order from frame to frame. A value.
 struct OrderMemory {
   layers::VisibilitySorter sorter;
-  std::vector<int> merged_into;                ///< of the last frame, by layer id
-  std::vector<AggregateSlot> slots;            ///< by id, from the first behind the author's layers
+  std::vector<int> merged_into;      ///< of the last frame, by layer id
+  std::vector<AggregateSlot> slots;  ///< by id, from the first behind the author's layers
   AggregateHistory history;
   int frame = -1;      ///< the last frame that was ordered
   int generation = 0;  ///< grows with every change of the aggregates that exist

@@ -251,8 +251,7 @@ std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const Layer& 
 
 chunker::RenderResult draw_in_one_pass(const Drawing& drawing, std::span<const int> geometry_layers,
                                        const SpritePlacement& placement) {
-  return draw(drawing, all_terms_of(drawing.layers.set(), geometry_layers, drawing.frame.time_s),
-              placement);
+  return draw(drawing, all_terms_of(drawing.layers.set(), geometry_layers, drawing.frame.time_s), placement);
 }
 
 SpriteMultipliers multipliers_at(const Layer& layer, double time_s) {

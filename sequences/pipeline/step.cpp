@@ -114,8 +114,7 @@ std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineS
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
-    SpriteMultipliers multipliers =
-        multipliers_at(report.layers[layer], time_of(pipeline, report.frame));
+    SpriteMultipliers multipliers = multipliers_at(report.layers[layer], time_of(pipeline, report.frame));
     if constexpr (layers::is_built(layers::Effect::ColorWarp))
       multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
@@ -198,7 +197,8 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
   chunker::CompositeResult result;
   const Stopwatch render_watch;
   if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
-    DirectPicture picture = draw_directly({pipeline, pipeline.authored, state.shadow_maps, prepared, now}, report.frame);
+    DirectPicture picture =
+        draw_directly({pipeline, pipeline.authored, state.shadow_maps, prepared, now}, report.frame);
     result = std::move(picture.composite);
     report.render += picture.render;
     report.times.render_ms = render_watch.ms();

@@ -122,8 +122,7 @@ struct Summary {
 
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence);
 /// Adds one frame's decisions; aggregates are added to the layers when they are first shown.
-void add_decisions(Summary& summary, const FrameReport& report,
-                   const PipelineState& state);
+void add_decisions(Summary& summary, const FrameReport& report, const PipelineState& state);
 std::string json_of(const Summary& summary);
 /// The table that the tool prints at the end.
 std::string table_of(const Summary& summary);

@@ -158,7 +158,9 @@ void write_picture(const FrameReport& report, const RunOptions& options) {
 class Runner {
  public:
   Runner(const Sequence& sequence, const Settings& settings, const RunOptions& options)
-      : options_(options), pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)), state_(pipeline_) {
+      : options_(options),
+        pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)),
+        state_(pipeline_) {
     make_folder(options.out);
     if (!options.plan_only) make_folder(options.out + "/frames");
     if (options.separate) make_folder(options.out + "/separate");
@@ -217,8 +219,7 @@ class Runner {
   void hand_over(FrameReport report) {
     std::optional<FrameQuality> quality;
     if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
-    if (prepared_ && options_.separate)
-      write_separate(pipeline_, state_, report, options_.out + "/separate");
+    if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     writer_.submit([this, shared, quality] { finish_frame(*shared, quality); });
   }

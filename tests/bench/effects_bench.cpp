@@ -96,7 +96,8 @@ struct Drawn {
 extern "C" __attribute__((noinline)) void effects_bench_run(const talisman::sequences::Variant& variant,
                                                             int frames, Drawn& drawn) {
   using namespace talisman;
-  const sequences::Pipeline pipeline = sequences::make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
+  const sequences::Pipeline pipeline =
+      sequences::make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   const chunker::PreparedScene prepared(*variant.sequence.scene, variant.settings.render);
   sequences::PipelineState state(pipeline);
   for (int frame = 0; frame < frames; ++frame) {

@@ -75,7 +75,8 @@ void CaptureAll(benchmark::State& run) {
   const layers::SceneFrame frame = work.scene.at(1.3);
   for (auto _ : run)
     for (const layers::Layer& layer : work.layers.layers)
-      benchmark::DoNotOptimize(layers::capture(frame, layer, pipeline.authored.bound(layer.id), work.settings.view));
+      benchmark::DoNotOptimize(
+          layers::capture(frame, layer, pipeline.authored.bound(layer.id), work.settings.view));
 }
 BENCHMARK(CaptureAll)->Unit(benchmark::kMicrosecond);
 

@@ -13,7 +13,9 @@ namespace talisman::tests {
 
 struct Playback {
   Playback(const sequences::Sequence& s, const sequences::Settings& settings, bool draw = false)
-      : sequence(s), pipeline(sequences::make_pipeline(*sequence.scene, sequence.layers, settings)), state(pipeline) {
+      : sequence(s),
+        pipeline(sequences::make_pipeline(*sequence.scene, sequence.layers, settings)),
+        state(pipeline) {
     if (draw) prepared.emplace(*sequence.scene);
   }
   sequences::FrameReport next() {

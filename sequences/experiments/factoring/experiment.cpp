@@ -76,16 +76,18 @@ class LayerPainter {
                  ShadedLayer& picture) {
     for (const ShownSprite& sprite : group) {
       TALISMAN_CHECK(state_.memory[sprite.layer].placement == placement);
-      picture.terms.push_back({layer(sprite).kind,
-                               draw_layer_linear({flush_, report_.layers, maps_, prepared_, now_}, layer(sprite), placement),
-                               sprite.multipliers.color});
+      picture.terms.push_back(
+          {layer(sprite).kind,
+           draw_layer_linear({flush_, report_.layers, maps_, prepared_, now_}, layer(sprite), placement),
+           sprite.multipliers.color});
     }
     const Layer& whole = layer_named(whole_.authored, layer(group.front()).name);
     const bool two = layer(group.front()).factored.second_texture && !constant_blend_;
     const auto base = two ? chunker::BasePasses::Two : chunker::BasePasses::One;
     const layers::vec2 gains =
         two ? layers::vec2(group[0].multipliers.color.x, group[1].multipliers.color.x) : layers::vec2(1);
-    const auto terms = draw_terms({whole_, whole_.authored, whole_maps_, prepared_, now_}, whole, placement, base);
+    const auto terms =
+        draw_terms({whole_, whole_.authored, whole_maps_, prepared_, now_}, whole, placement, base);
     picture.surface = chunker::surface_of(terms, gains);
     picture.unfactored = chunker::blend_terms(terms, gains);
   }

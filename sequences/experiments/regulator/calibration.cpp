@@ -109,7 +109,8 @@ class LayerStage {
       const layers::LayerState then = captured_states(pipeline_, state_, frame - age)[layer];
       if (!then.touches_display) continue;
       const layers::SpritePlacement old_placement = captured_placement(pipeline_, state_, layer, frame - age);
-      const LayerAssessment assessment = assess_sprite(pipeline_, state_.layers, then, old_placement, now, age);
+      const LayerAssessment assessment =
+          assess_sprite(pipeline_, state_.layers, then, old_placement, now, age);
       if (old_placement.empty() || !(assessment.identical || regulator::has_sound_fit(assessment))) continue;
       if (!fresh) fresh = draw(layer, frame, placement, layers::dmat3(1.0), layers::dvec3(1.0));
       const LayerPicture old_one =

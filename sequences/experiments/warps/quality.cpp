@@ -42,7 +42,8 @@ void draw_truth(const RateOptions& options, Truth& truth) {
 
 CurveQuality draw_and_compare(const RateOptions& options, const Truth& truth, Curve curve,
                               double threshold_px) {
-  const Pipeline pipeline = make_pipeline(truth.scene, truth.layers, settings_for(options, curve, threshold_px));
+  const Pipeline pipeline =
+      make_pipeline(truth.scene, truth.layers, settings_for(options, curve, threshold_px));
   PipelineState state(pipeline);
   CurveQuality result{curve, threshold_px, 0, {}, {}};
   std::vector<FrameDiff> diffs;

@@ -225,8 +225,7 @@ TEST(MeasureVariants, ARunKeepsItsSprites) {
   const Pipeline pipeline = make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   PipelineState state(pipeline);
   std::int64_t renders = 0;
-  for (const int frame : frames)
-    renders += line_of(step(pipeline, state, frame, nullptr)).renders;
+  for (const int frame : frames) renders += line_of(step(pipeline, state, frame, nullptr)).renders;
   EXPECT_EQ(run.renders, renders);
 }
 

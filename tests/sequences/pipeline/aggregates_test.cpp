@@ -122,6 +122,27 @@ TEST(Aggregates, TheSameLayersHaveTheSameAggregateAgain) {
   EXPECT_EQ(run.state.layers[kBoth].name, "wall+ball");
 }
 
+// Aggregates belong to the state, not to the pipeline under which they were made.
+TEST(Aggregates, StateThatIsCarriedOnFollowsTheSettingsOfItsNewPipeline) {
+  const Sequence s = crossing();
+  Playback run(s, settings_of(s));
+  const int first = first_meeting(s);
+  const LayerTable before = run.all(first + 1).back().layers;
+  ASSERT_EQ(before.size(), 4u);
+  ASSERT_FALSE(before.bound(kBoth).follows_faces);
+  Settings changed = settings_of(s, Policy::Reference);
+  changed.regulator.turned_px = 1;
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, changed);
+  const FrameReport report = step(pipeline, run.state, first + 1, nullptr);
+  ASSERT_EQ(report.order.merged_into[kWall], kBoth);
+  EXPECT_THAT(report.plan.decisions[kBoth].reason, StartsWith("policy: reference"));
+  ASSERT_EQ(report.layers.size(), 4u);
+  EXPECT_EQ(report.layers[kBoth].name, "wall+ball");
+  for (const layers::Layer& layer : report.layers)
+    EXPECT_TRUE(report.layers.bound(layer.id).follows_faces) << layer.name;
+  EXPECT_FALSE(before.bound(kBoth).follows_faces) << "who holds a table keeps it as it was";
+}
+
 TEST(Aggregates, SpriteIsGivenUpWhenItsAggregateIsGoneForLong) {
   const Sequence s = crossing();
   Playback run(s, settings_of(s), true);

@@ -56,8 +56,7 @@ int front_layer(const FrameReport& report, const chunker::SpriteStore& sprites, 
 std::string layers_at(const FrameReport& report, const PipelineState& state, int x, int y) {
   std::string text;
   for (const ShownSprite& shown : report.shown)
-    if (alpha_at(shown, state.sprites, x, y) > 0)
-      text += report.layers[shown.layer].name + ", ";
+    if (alpha_at(shown, state.sprites, x, y) > 0) text += report.layers[shown.layer].name + ", ";
   return text;
 }
 
@@ -282,8 +281,7 @@ TEST(Carousel, PlanksGoRoundUntilOneLeavesAndAgainWhenItIsBack) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
     bool planks = false;
     for (const Merger& merger : report.order.mergers)
-      planks |=
-          report.layers[merger.layer].name == "plank a+plank b+plank c";
+      planks |= report.layers[merger.layer].name == "plank a+plank b+plank c";
     history += planks ? 'm' : '.';
   }
   EXPECT_EQ(history.front(), 'm');

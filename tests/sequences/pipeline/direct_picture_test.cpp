@@ -25,7 +25,9 @@ constexpr layers::ivec2 kDisplay{160, 120};
 /// A room with its layers and pipeline, which keep references to each other.
 struct Show {
   explicit Show(const Room& room_in, regulator::Policy policy = regulator::Policy::Direct)
-      : room(room_in), layers(room.layers()), pipeline(make_pipeline(room.scene, layers, settings_for(policy))) {}
+      : room(room_in),
+        layers(room.layers()),
+        pipeline(make_pipeline(room.scene, layers, settings_for(policy))) {}
   Show(const Show&) = delete;
 
   static Settings settings_for(regulator::Policy policy) {
@@ -112,7 +114,8 @@ chunker::Sprite mirrored_in(const Show& show, const std::string& name) {
   placement.size_px = kDisplay;
   ShadowMapStore maps;
   const chunker::PreparedScene prepared(show.room.scene);
-  return draw_layer({show.pipeline, show.pipeline.authored, maps, prepared, show.room.scene.at(0)}, show.layer(name), placement)
+  return draw_layer({show.pipeline, show.pipeline.authored, maps, prepared, show.room.scene.at(0)},
+                    show.layer(name), placement)
       .sprite;
 }
 

@@ -168,8 +168,7 @@ TEST(ColorWarp, DecisionsSayTheColourAndTheFiducial) {
   Dimming stage;
   const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
   const auto reports = stage.run(Policy::Threshold, false);
-  const auto json =
-      nlohmann::json::parse(json_of(reports.back(), reports.back().plan.decisions[0]));
+  const auto json = nlohmann::json::parse(json_of(reports.back(), reports.back().plan.decisions[0]));
   EXPECT_NEAR(json["color"][0], 0.3, 1e-6);
   const auto& photometric = json["fiducials"]["photometric"];
   EXPECT_LT(photometric["color"], 0.01);

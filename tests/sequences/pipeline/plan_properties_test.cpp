@@ -274,12 +274,12 @@ TEST(PlanOracle, EqualsEveryWayToCutATinySequence) {
       std::vector<std::vector<bool>> serves(kTiny, std::vector<bool>(kTiny));
       for (int r = 0; r < kTiny; ++r)
         for (int f = 0; f < kTiny; ++f)
-          serves[r][f] =
-              regulator::violation_of(assess_sprite(pipeline, state.layers, captured_states(pipeline, state, r)[layer],
-                                                    captured_placement(pipeline, state, layer, r),
-                                                    captured_states(pipeline, state, f)[layer], 0),
-                                      stage.settings.regulator)
-                  .empty();
+          serves[r][f] = regulator::violation_of(
+                             assess_sprite(pipeline, state.layers, captured_states(pipeline, state, r)[layer],
+                                           captured_placement(pipeline, state, layer, r),
+                                           captured_states(pipeline, state, f)[layer], 0),
+                             stage.settings.regulator)
+                             .empty();
       EXPECT_EQ(renders, fewest_by_force(serves)) << "seed " << seed << " layer " << layer;
       compared += renders > 1 && renders < kTiny;
     }

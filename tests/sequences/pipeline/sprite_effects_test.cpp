@@ -110,11 +110,13 @@ TEST(MotionBlur, FasterLayersAreSampledLessDenselyAndNeverBelowASixteenth) {
   slow.blurred(0.1);
   fast.blurred(1);
   fast.settings.fps = slow.settings.fps = 4;  // long frames: fast motion
-  const Pipeline a = make_pipeline(slow.scene, slow.layers, slow.settings), b = make_pipeline(fast.scene, fast.layers, fast.settings);
+  const Pipeline a = make_pipeline(slow.scene, slow.layers, slow.settings),
+                 b = make_pipeline(fast.scene, fast.layers, fast.settings);
   PipelineState state(a);
   bool some_blur = false;
   for (const layers::LayerState& now : captured_states(a, state, 3)) {
-    const MotionSampling little = motion_sampling(a, a.authored, now), much = motion_sampling(b, b.authored, now);
+    const MotionSampling little = motion_sampling(a, a.authored, now),
+                         much = motion_sampling(b, b.authored, now);
     EXPECT_LE(much.density, little.density);
     EXPECT_GE(much.density, 1.0 / 16);
     some_blur = some_blur || much.density < 0.5;
@@ -143,7 +145,8 @@ TEST(MotionBlur, BlurThatIsNotThatOfNowCountsAsSampling) {
     for (int frame = 0; frame < 8; ++frame) {
       const layers::LayerState& then = captured_states(pipeline, state, frame)[layer];
       const layers::LayerState& now = captured_states(pipeline, state, frame + 4)[layer];
-      const double ratio = motion_sampling(pipeline, state.layers, now).density / motion_sampling(pipeline, state.layers, then).density;
+      const double ratio = motion_sampling(pipeline, state.layers, now).density /
+                           motion_sampling(pipeline, state.layers, then).density;
       regulator::LayerAssessment other, same;
       same.identical = other.identical = true;
       judge_motion_blur(pipeline, state.layers, then, now, other);

@@ -26,8 +26,7 @@ std::vector<std::string> hashes_of(const std::vector<FrameReport>& reports) {
   return hashes;
 }
 
-std::vector<std::string> decisions_of(const Stage& stage, const std::vector<FrameReport>& reports) {
-  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
+std::vector<std::string> decisions_of(const std::vector<FrameReport>& reports) {
   std::vector<std::string> lines;
   for (const FrameReport& report : reports)
     for (const regulator::LayerDecision& decision : report.plan.decisions)
@@ -70,7 +69,7 @@ TEST(Step, PlanWithoutPixelsMakesTheSameDecisions) {
     SCOPED_TRACE(std::string(regulator::name(stage.settings.regulator.policy)));
     const auto planned = stage.run(kFrames, false);
     const auto rendered = stage.run(kFrames, true);
-    EXPECT_EQ(decisions_of(stage, planned), decisions_of(stage, rendered));
+    EXPECT_EQ(decisions_of(planned), decisions_of(rendered));
     EXPECT_GT(count(planned, Action::Reuse), 0);
     EXPECT_GT(count(planned, Action::Rerender), static_cast<int>(stage.layers.layers.size()));
   }
@@ -286,6 +285,21 @@ TEST(Step, DrawingTheTruthsDoesNotDisturbTheRun) {
   EXPECT_EQ(hash_of(draw_reference(pipeline, 3, prepared)), hash_of(reports[3].picture));
   const auto direct = Stage(tests::moving_scene()).policy(Policy::Direct).run(4, true);
   EXPECT_EQ(hash_of(draw_direct(pipeline, 3, prepared)), hash_of(direct[3].picture));
+}
+
+// What a program writes that has a scene and nothing else. The layers are a temporary: the pipeline has its own.
+TEST(Step, FromASceneToItsRendersInAFewLines) {
+  const layers::Scene scene = tests::moving_scene();
+  Settings settings;
+  settings.regulator.policy = Policy::Hold;  // every third frame
+  const Pipeline pipeline =
+      make_pipeline(scene, layers::factor(scene, layers::default_layer_specs(scene)), settings);
+  PipelineState state(pipeline);
+  int renders = 0;
+  for (int frame = 0; frame < 10; ++frame)
+    for (const regulator::LayerDecision& decision : step(pipeline, state, frame, nullptr).plan.decisions)
+      renders += decision.action == Action::Rerender;
+  EXPECT_EQ(renders, 4 * static_cast<int>(pipeline.authored.size()));  // in frames 0, 3, 6 and 9
 }
 
 TEST(Step, NoLayersShowTheBackground) {
