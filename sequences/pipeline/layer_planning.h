@@ -23,8 +23,8 @@ double time_of(const Pipeline& pipeline, int frame);
 layers::SceneFrame scene_at(const Pipeline& pipeline, int frame);
 layers::SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame);
 
-/// Makes `frame` the frame that is planned, under this pipeline: forgets what is past, what was only expected, and what was
-/// judged under other options.
+/// Makes `frame` the frame that is planned, under this pipeline: forgets what is past, what was only
+/// expected, and what was judged under other options.
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame);
 
 /// The states of all layers at `frame`, by layer id; captured once and kept in `state` (a frame ahead that

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What is remembered of the passes behind shadows and reflections: which shadow maps are up to date, and their
-/// pixels; and what tells them from others, the layers whose terms look them up.
+/// What is remembered of the passes behind shadows and reflections: which shadow maps are up to date, and
+/// their pixels; and which layers look them up.
 ///
-/// A shadow map is kept while its light and its casters rest, whichever layer looks it up. What a scene does not call
-/// for makes no pass and allocates nothing.
+/// A shadow map is kept while its light and its casters rest, whichever layer looks it up. What a scene does
+/// not call for makes no pass and allocates nothing.
 
 #include <cstddef>
 #include <cstdint>

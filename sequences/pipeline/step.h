@@ -19,8 +19,8 @@ namespace talisman::sequences {
 
 /// Plans frame `frame` and, if `prepared` is given, draws it. Frames come in order from 0; a frame may be
 /// repeated, and (with policies that do not look ahead) frames may run backwards. The same `state` may be
-/// carried on under a pipeline of other settings: sprites and what is known of them stay, what was planned ahead is planned
-/// anew.
+/// carried on under a pipeline of other settings: sprites and what is known of them stay, what was planned
+/// ahead is planned anew.
 FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared);
 
