@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/results/frame_lines.h"
-#include "tests/sequences/stage.h"
+#include "tests/sequences/small_run.h"
 #include "tests/support/fleet.h"
 
 namespace talisman::sequences {

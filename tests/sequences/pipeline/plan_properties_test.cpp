@@ -7,7 +7,7 @@
 #include "regulator/policies.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/results/frame_lines.h"
-#include "tests/sequences/stage.h"
+#include "tests/sequences/small_run.h"
 #include "tests/support/fleet.h"
 
 namespace talisman::sequences {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/results/frame_lines.h"
-#include "tests/sequences/stage.h"
+#include "tests/sequences/small_run.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {
