@@ -4,7 +4,7 @@
 #include <array>
 #include <ostream>
 
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 #include "sequences/pictures/plot.h"
 

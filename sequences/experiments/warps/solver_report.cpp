@@ -8,7 +8,7 @@
 
 #include "sequences/experiments/large_plot.h"
 #include "sequences/experiments/statistics.h"
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
