@@ -214,12 +214,10 @@ void print_report(const FactoringReport& report, std::ostream& out) {
          "\nunexplained: measured - predicted; elsewhere: measured where nothing is predicted; bound: of "
          "rounding (8-bit sprites, 16-bit compositor);"
          "\nof it: the largest share of its own bound that an unexplained error reaches; beyond: how many "
-         "are "
-         "larger\n"
+         "are larger\n"
       << plain_text(prediction_table(report))
       << "\nwhat is lost, against the unfactored truth: code values of the sRGB frame; each + adds to the "
-         "line "
-         "above\n"
+         "line above\n"
       << plain_text(loss_table(report));
   if (report.result.blends_over_time)
     out << "textures are blended over time, which the unfactored sequence cannot: its truth has the blends "

@@ -237,8 +237,7 @@ void print_report(const RegulatorReport& report, std::ostream& out) {
          "sum\n"
       << plain_text(cost_table(report))
       << "\nhow far from the truth: geometric error displayed; picture against reference; popping: step of "
-         "the"
-         "\nerror, code values, where sprites are drawn again (RMS, 95th percentile), and elsewhere; "
+         "the\nerror, code values, where sprites are drawn again (RMS, 95th percentile), and elsewhere; "
          "* least FLIP for its polygons\n"
       << plain_text(error_table(report)) << "\nlookahead at " << fixed(report.lookahead.geometric_px, 2)
       << " px, " << size_text(report.lookahead.display_px) << " px display, plan only\n"

@@ -134,14 +134,12 @@ void add_first_series(Page& page, const WarpReport& report) {
   page.blocks.push_back(Heading{2, "Update rate against error threshold"});
   page.blocks.push_back(Paragraph{
       "Update rate: share of " + std::to_string(kMotion_frames) +
-      " frames in which the object had to be drawn again, at 1024 × 1024, without a pixel being drawn. The "
-      "order "
-      "is that of the mean logarithm of the update rate relative to aff, over the thresholds at which not "
-      "all "
-      "curves render equally often; neighbours closer than " +
+      " frames in which the object had to be drawn again, at 1024 × 1024, without a pixel being drawn. "
+      "The order is that of the mean logarithm of the update rate relative to aff, over the thresholds at "
+      "which not all curves render equally often; neighbours closer than " +
       fixed(100 * kAlike, 0) +
-      " % are one cluster. A curve's name with i minimises the maximum error, one without "
-      "the sum of squares. The paper's motions are not published, so what can agree is order and clusters."});
+      " % are one cluster. A curve's name with i minimises the maximum error, one without the sum of "
+      "squares. The paper's motions are not published, so what can agree is order and clusters."});
   for (const RateFigure& figure : report.figures)
     if (figure.main) add_main_figure(page, report, figure);
   page.blocks.push_back(Heading{2, "All objects and motions"});
@@ -162,8 +160,7 @@ void add_second_series(Page& page, const WarpReport& report) {
                 " frames of the main motion, " + fixed(report.rate.fps, 0) + " per second, at " +
                 std::to_string(report.rate.display_px.x) + " × " + std::to_string(report.rate.display_px.y) +
                 "; mean over all frames against the policy reference. The paper judged by eye: affine is "
-                "better than the "
-                "less general warps, and perspective brings no improvement."});
+                "better than the less general warps, and perspective brings no improvement."});
   for (const QualityRun& run : report.qualities) {
     page.blocks.push_back(Heading{3, object_of(report, run).title});
     page.blocks.push_back(table_of(run));
