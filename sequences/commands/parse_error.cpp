@@ -8,7 +8,10 @@
 namespace talisman::sequences {
 namespace {
 
-bool is_option(const std::string& argument) { return argument.rfind("--", 0) == 0; }
+bool is_option(const std::string& argument) { return argument.size() > 1 && argument.front() == '-'; }
+
+/// Without what it is set to: "--size" of "--size=64x48".
+std::string name_of(const std::string& option) { return option.substr(0, option.find('=')); }
 
 std::vector<std::string> commands_of(const CLI::App& app) {
   std::vector<std::string> names;
@@ -24,8 +27,10 @@ std::vector<std::string> options_of(const CLI::App& command) {
   return names;
 }
 
-std::string unknown_command(const std::string& written, const std::vector<std::string>& known) {
-  const std::string what = "'" + written + "' is no command; ";
+/// "'rendr' is no command; did you mean 'render'?"
+std::string unknown_word(const std::string& written, const std::string& kind,
+                         const std::vector<std::string>& known) {
+  const std::string what = "'" + written + "' is no " + kind + "; ";
   if (const std::string nearest = nearest_word(written, known); !nearest.empty())
     return what + "did you mean '" + nearest + "'?";
   std::string names;
@@ -38,13 +43,13 @@ std::string unknown_command(const std::string& written, const std::vector<std::s
 std::string explained(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
   const std::vector<CLI::App*> parsed = app.get_subcommands();
-  if (parsed.empty() && !unknown.empty() && !is_option(unknown.front()))
-    return unknown_command(unknown.front(), commands_of(app));
-  const std::vector<std::string> known = options_of(parsed.empty() ? app : *parsed.front());
+  if (parsed.empty() && !unknown.empty())
+    return is_option(unknown.front()) ? unknown_word(name_of(unknown.front()), "option", options_of(app))
+                                      : unknown_word(unknown.front(), "command", commands_of(app));
   for (const std::string& argument : unknown) {
     if (!is_option(argument)) continue;
-    const std::string nearest = nearest_word(argument.substr(0, argument.find('=')), known);
-    if (!nearest.empty()) return std::string(error.what()) + "; did you mean " + nearest + "?";
+    const std::string nearest = nearest_word(name_of(argument), options_of(*parsed.front()));
+    if (!nearest.empty()) return std::string(error.what()) + "; did you mean '" + nearest + "'?";
   }
   return error.what();
 }

@@ -13,7 +13,8 @@ namespace talisman::sequences {
 ///
 ///   'rendr' is no command; did you mean 'render'?
 ///   'paint' is no command; must be one of render, plan, …
-///   The following argument was not expected: --sise=64x64; did you mean --size?
+///   '--versoin' is no option; did you mean '--version'?
+///   The following argument was not expected: --sise=64x64; did you mean '--size'?
 std::string explained(const CLI::App& app, const CLI::ParseError& error);
 
 }  // namespace talisman::sequences
