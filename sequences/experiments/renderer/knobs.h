@@ -3,18 +3,18 @@
 
 /// Which knobs of the renderer are turned, and how far? One at a time, all others as the truth has them:
 ///
-///   in one pass (policy direct)                                                    where is called for
+///   in one pass (policy direct)
 ///     samples             1, 4, 16
 ///     merge tolerances    the default, 0
-///     texture filter      nearest, bilinear, trilinear, anisotropy 2 … 16        a texture
-///     shading             flat, Gouraud, Phong                                   lighting
-///     shadow map          128 … 2048 texels                                      a shadow map
-///     shadow filter       percentage-closer radius 0 … 3 texels                  a shadow map
+///     texture filter      nearest, bilinear, trilinear, anisotropy 2 … 16        where a texture is called for
+///     shading             flat, Gouraud, Phong                                   … lighting
+///     shadow map          128 … 2048 texels                                      … a shadow map
+///     shadow filter       percentage-closer radius 0 … 3 texels                  … a shadow map
 ///   through sprites (policy reference)
 ///     sprite resolution   0.25 … 2 texels per pixel, all layers
-///     shade resolution    0.125 … 1, all shade layers, and each kind alone       a shade layer
+///     shade resolution    0.125 … 1, all shade layers, and each kind alone       … a shade layer
 ///     compression         quality 30 … 95, off
-///     motion blur         as the layers ask for, off                             motion blur
+///     motion blur         as the layers ask for, off                             … motion blur
 ///
 /// The truth is one stated setting: the finest of every knob in one pass (sprites at the display's resolution
 /// have no part in it). A knob whose effect the scene does not call for is not measured, and says why.
