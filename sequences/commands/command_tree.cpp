@@ -3,6 +3,7 @@
 
 #include <iostream>
 #include <string>
+#include <utility>
 
 #include "sequences/commands/render.h"
 #include "sequences/commands/version.h"
