@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/commands/accuracy_factoring.h"
 
-#include <cstdio>
-#include <ostream>
-
-#include "sequences/commands/experiment_options.h"
-#include "sequences/commands/options.h"
+#include "sequences/experiments/factoring/experiment.h"
+#include "sequences/experiments/factoring/variants.h"
 
 namespace talisman::sequences {
+namespace {
 
-FactoringReport measure_factoring_report(const Sequence& sequence, const RegulatorCommandOptions& options) {
+ResolvedRun run_of(const Sequence& sequence, const ExperimentOptions& options) {
+  return experiment_run(sequence, options, experiment_size(sequence, options));
+}
+
+void require_measurable(const Sequence& sequence, const ExperimentOptions& options) {
   if (!is_factored(sequence))
     throw InputError(
         sequence.name +
         ": no layer factors a shade term, rule: some layer has `shading` that the scene calls for");
-  CommandLine line;
-  line.frames = options.frames;
-  line.size = options.size.empty() ? default_experiment_size(sequence.display_px) : options.size;
-  line.progress = options.progress;
-  const ResolvedRun run = resolve(line, sequence, true);
+  experiment_frames(run_of(sequence, options), options.quality_every);
+}
+
+}  // namespace
+
+FactoringReport measure_factoring_report(const Sequence& sequence, const ExperimentOptions& options) {
+  require_measurable(sequence, options);
+  const ResolvedRun run = run_of(sequence, options);
   FactoringReport report;
   report.sequence = sequence.name;
   report.policy = regulator::name(run.settings.regulator.policy);
@@ -29,17 +34,9 @@ FactoringReport measure_factoring_report(const Sequence& sequence, const Regulat
   return report;
 }
 
-int run_factoring_accuracy(const RegulatorCommandOptions& options, const std::string& dir,
-                           std::ostream& out) {
-  progress_kind_from(options.progress);
-  const Sequence sequence = load_sequence(options.sequence);
-  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  const FactoringReport report = measure_factoring_report(sequence, options);
-  create_folder(dir);
-  write_report(report, dir);
-  print_report(report, out);
-  out << "\nresults in " << dir << "\n";
-  return kSuccess;
+int run_factoring_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out) {
+  const ExperimentCommand<FactoringReport> command{require_measurable, measure_factoring_report};
+  return run_experiment(command, options, dir, out);
 }
 
 }  // namespace talisman::sequences

@@ -2,45 +2,38 @@
 #include "sequences/commands/accuracy_renderer.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <numeric>
-#include <ostream>
 
-#include "sequences/commands/experiment_options.h"
-#include "sequences/commands/options.h"
+#include "sequences/experiments/renderer/experiment.h"
 
 namespace talisman::sequences {
 namespace {
 
-ResolvedRun resolved(const Sequence& sequence, const RegulatorCommandOptions& options) {
-  CommandLine line;
-  line.frames = options.frames;
-  line.size = options.size.empty() ? default_experiment_size(sequence.display_px) : options.size;
-  line.progress = options.progress;
-  return resolve(line, sequence, true);
+ResolvedRun run_of(const Sequence& sequence, const ExperimentOptions& options) {
+  return experiment_run(sequence, options, experiment_size(sequence, options));
 }
 
-std::vector<int> frames_from_nothing(const ResolvedRun& run, int every) {
-  if (every < 0)
-    throw InputError("--quality-every is " + std::to_string(every) + ", must be at least 0 (0: automatic)");
-  const int frames = run.options.last_frame - run.options.first_frame + 1;
-  if (every == 0) every = (frames + kDefaultRendererSamples - 1) / kDefaultRendererSamples;
-  return sampled_frames({run.options.first_frame, run.options.last_frame, every});
+ExperimentFrames drawn_from_nothing(const ResolvedRun& run, const ExperimentOptions& options) {
+  return experiment_frames(run, options.quality_every, kDefaultRendererSamples);
 }
 
 std::vector<int> frames_of_run(const ResolvedRun& run, bool is_given) {
   const int all = run.options.last_frame - run.options.first_frame + 1;
-  std::vector<int> frames(is_given ? all : std::min(all, kDefaultRunFrames));
+  std::vector<int> frames(is_given ? all : std::min(all, kDefaultRun_frames));
   std::iota(frames.begin(), frames.end(), run.options.first_frame);
   return frames;
 }
 
+void require_measurable(const Sequence& sequence, const ExperimentOptions& options) {
+  drawn_from_nothing(run_of(sequence, options), options);
+}
+
 }  // namespace
 
-RendererReport measure_renderer_report(const Sequence& sequence, const RegulatorCommandOptions& options) {
-  const ResolvedRun run = resolved(sequence, options);
+RendererReport measure_renderer_report(const Sequence& sequence, const ExperimentOptions& options) {
+  const ResolvedRun run = run_of(sequence, options);
   const Variant given{sequence, run.settings};
-  const std::vector<int> frames = frames_from_nothing(run, options.quality_every);
+  const std::vector<int> frames = sampled_frames(drawn_from_nothing(run, options));
   RendererReport report;
   report.sequence = sequence.name;
   report.display_px = run.settings.view.display_px;
@@ -52,16 +45,9 @@ RendererReport measure_renderer_report(const Sequence& sequence, const Regulator
   return report;
 }
 
-int run_renderer_accuracy(const RegulatorCommandOptions& options, const std::string& dir, std::ostream& out) {
-  progress_kind_from(options.progress);
-  const Sequence sequence = load_sequence(options.sequence);
-  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  create_folder(dir);
-  const RendererReport report = measure_renderer_report(sequence, options);
-  write_report(report, dir);
-  print_report(report, out);
-  out << "\nresults in " << dir << "\n";
-  return kSuccess;
+int run_renderer_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out) {
+  const ExperimentCommand<RendererReport> command{require_measurable, measure_renderer_report};
+  return run_experiment(command, options, dir, out);
 }
 
 }  // namespace talisman::sequences

@@ -1,39 +1,41 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/commands/experiment_options.h"
 
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 
-#include "sequences/files/errors.h"
+#include "sequences/commands/words.h"
 
 namespace talisman::sequences {
-namespace {
 
-template <typename Kind, std::size_t N>
-Kind chosen(const std::string& option, const std::string& name,
-            const std::array<std::pair<const char*, Kind>, N>& kinds) {
-  std::string known;
-  for (const auto& [word, kind] : kinds) {
-    if (name == word) return kind;
-    known += std::string(known.empty() ? "" : ", ") + word;
-  }
-  throw InputError(option + " '" + name + "', rule: one of " + known);
+std::string experiment_size(const Sequence& sequence, const ExperimentOptions& options) {
+  if (!options.size.empty()) return options.size;
+  const layers::ivec2 px = sequence.display_px;
+  const double scale = std::min(1.0, double(kLargestDefault_px) / std::max(px.x, px.y));
+  const auto scaled = [scale](int side) { return std::to_string(std::max(1L, std::lround(side * scale))); };
+  return scaled(px.x) + "x" + scaled(px.y);
 }
 
-}  // namespace
-
-ProgressKind progress_kind_from(const std::string& name) {
-  return chosen("--progress", name,
-                std::array{std::pair{"auto", ProgressKind::Auto}, std::pair{"bar", ProgressKind::Bar},
-                           std::pair{"plain", ProgressKind::Plain}, std::pair{"none", ProgressKind::None}});
+ResolvedRun experiment_run(const Sequence& sequence, const ExperimentOptions& options,
+                           const std::string& size, const std::string& policy) {
+  CommandLine line;
+  line.policy = policy;
+  line.frames = options.frames;
+  line.size = size;
+  line.progress = options.progress;
+  return resolve(line, sequence, true);
 }
 
-layers::BoundKind bound_kind_from(const std::string& name) {
-  using layers::BoundKind;
-  return chosen("--bound", name,
-                std::array{std::pair{"box8", BoundKind::Box8}, std::pair{"dop14", BoundKind::Dop14},
-                           std::pair{"dop26", BoundKind::Dop26}});
+ExperimentFrames experiment_frames(const ResolvedRun& run, int every, int samples) {
+  if (every < 0)
+    throw InputError("--quality-every is " + std::to_string(every) + ", must be at least 0 (0: automatic)");
+  const int frames = run.options.last_frame - run.options.first_frame + 1;
+  if (every == 0) every = std::max(1, (frames + samples - 1) / samples);
+  return {run.options.first_frame, run.options.last_frame, every};
 }
+
+void require_progress_word(const std::string& word) { choice("--progress", word, kProgressWords); }
 
 void create_folder(const std::string& path) {
   std::error_code error;

@@ -1,22 +1,74 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Words and folders that the commands of the experiments have in common.
+/// What the commands of the experiments on sequences have in common: their options, and the steps from a name
+/// on the command line to files in a folder.
 
+#include <ostream>
 #include <string>
 
-#include "layers/polyhedron.h"
-#include "sequences/files/progress.h"
+#include "sequences/commands/options.h"
+#include "sequences/content/sequence.h"
+#include "sequences/experiments/sampled_frames.h"
+#include "sequences/files/errors.h"
+#include "sequences/results/run.h"
 
 namespace talisman::sequences {
 
-/// Of "auto", "bar", "plain", "none" (option --progress). Throws InputError.
-ProgressKind progress_kind_from(const std::string& name);
+struct ExperimentOptions {
+  std::string sequence;   ///< name or path, as of `render`; empty: not asked for
+  std::string frames;     ///< "A-B", inclusive; empty: all
+  std::string size;       ///< "WxH"; empty: the sequence's, scaled down to kLargestDefault_px
+  int quality_every = 0;  ///< ≥ 1: one frame of so many is drawn and compared, cost in proportion to its
+                          ///< inverse; 0: so that about kDefaultSamples are
+  std::string progress = "auto";  ///< auto, bar, plain or none
+};
 
-/// Of "box8", "dop14", "dop26" (option --bound). Throws InputError.
-layers::BoundKind bound_kind_from(const std::string& name);
+/// With these the canyon takes about three minutes on two cores.
+inline constexpr int kLargestDefault_px = 512;
+inline constexpr int kDefaultSamples = 20;
+
+/// "WxH" as given, else the sequence's display made smaller in both directions until its larger side is
+/// kLargestDefault_px.
+std::string experiment_size(const Sequence& sequence, const ExperimentOptions& options);
+
+/// What `plan` would make of the options on a display of `size` (empty: the sequence's); `policy` empty: the
+/// sequence's own. Throws InputError.
+ResolvedRun experiment_run(const Sequence& sequence, const ExperimentOptions& options,
+                           const std::string& size, const std::string& policy = "");
+
+/// The frames of the run, one in `every` to be drawn; 0: so that about `samples` are. Throws InputError.
+ExperimentFrames experiment_frames(const ResolvedRun& run, int every, int samples = kDefaultSamples);
+
+/// Throws InputError unless it is one of the words of --progress.
+void require_progress_word(const std::string& word);
 
 /// Creates the folder and those above it where they are not there. Throws OutputError.
 void create_folder(const std::string& path);
+
+/// What makes one experiment out of the steps that all of them take.
+template <typename Report>
+struct ExperimentCommand {
+  /// Throws InputError where the sequence, or an option, allows no measurement.
+  void (*require)(const Sequence&, const ExperimentOptions&);
+  Report (*measure)(const Sequence&, const ExperimentOptions&);
+};
+
+/// Reads the sequence, measures, writes into the folder `dir` (write_report) and prints (print_report). What
+/// can be refused is refused before the sequence is read or the folder made. Throws InputError and
+/// OutputError.
+template <typename Report>
+int run_experiment(const ExperimentCommand<Report>& command, const ExperimentOptions& options,
+                   const std::string& dir, std::ostream& out) {
+  require_progress_word(options.progress);
+  const Sequence sequence = load_with_warnings(options.sequence);
+  command.require(sequence, options);
+  create_folder(dir);
+  const Report report = command.measure(sequence, options);
+  write_report(report, dir);
+  print_report(report, out);
+  out << "\nresults in " << dir << "\n";
+  return kSuccess;
+}
 
 }  // namespace talisman::sequences

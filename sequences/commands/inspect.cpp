@@ -2,13 +2,18 @@
 #include "sequences/commands/inspect.h"
 
 #include <cstdio>
-#include <set>
+#include <ostream>
 
 #include <nlohmann/json.hpp>
 
 #include "layers/effects.h"
 #include "regulator/profile.h"
+#include "sequences/commands/inspect_order.h"
 #include "sequences/commands/missing_effects.h"
+#include "sequences/commands/options.h"
+#include "sequences/commands/words.h"
+#include "sequences/experiments/variant.h"
+#include "sequences/files/errors.h"
 
 namespace talisman::sequences {
 
@@ -16,35 +21,17 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* name_of(layers::OrderGroup group) {
-  switch (group) {
-    case layers::OrderGroup::Background:
-      return "background";
-    case layers::OrderGroup::Normal:
-      return "normal";
-    case layers::OrderGroup::Foreground:
-      return "foreground";
-  }
-  return "own";
-}
+/// Of a group that no word stands for, since a variant of the sequence gave each layer its own.
+std::string name_of(layers::OrderGroup group) { return std::string(word_of(group, kOrderGroupWords, "own")); }
 
-const char* name_of(layers::BoundKind kind) {
-  switch (kind) {
-    case layers::BoundKind::Box8:
-      return "box8";
-    case layers::BoundKind::Dop14:
-      return "dop14";
-    case layers::BoundKind::Dop26:
-      return "dop26";
-  }
-  return "?";
-}
+std::string name_of(layers::BoundKind kind) { return std::string(word_of(kind, kBoundWords)); }
 
+/// As a run without any option has them.
 std::vector<layers::EffectCall> effects_of(const Sequence& s) {
-  layers::RunEffects run;
-  if (s.compression) run.compression_quality = s.compression->quality;
-  run.follows_light = regulator::asks_for_light(s.regulator);
-  return layers::effects_called_for(*s.scene, s.layers.layers, run);
+  Settings own;
+  own.regulator = s.regulator;
+  own.compression = s.compression;
+  return effects_of(s, own);
 }
 
 struct Memory {
@@ -75,35 +62,52 @@ std::string line(const char* pattern, auto... values) {
   return text;
 }
 
-}  // namespace
-
-std::string inspection_text(const Sequence& s) {
-  const Memory memory = memory_of(*s.scene);
-  std::string text =
-      line("%s (%s)\n  %d frames at %g/s, %dx%d px, policy %s, warp %s, bound %s\n\n", s.name.c_str(),
-           s.file.c_str(), s.frames, s.fps, s.display_px.x, s.display_px.y,
-           std::string(regulator::name(s.regulator.policy)).c_str(), s.warp.c_str(), name_of(s.bound));
-  text += line("  %-24s %-10s %6s %9s  %s\n", "layer", "group", "parts", "polygons", "motion");
+std::string layer_lines(const Sequence& s) {
+  std::string text = line("  %-24s %-10s %6s %9s  %s\n", "layer", "group", "parts", "polygons", "motion");
   int polygons = 0;
   for (const layers::Layer& layer : s.layers.layers) {
     polygons += layer.polygons;
     const std::string motion = layer.rigid_node >= 0
                                    ? "rigid, follows " + s.scene->nodes[layer.rigid_node].name
                                    : std::string("parts move against each other or deform");
-    text += line("  %-24s %-10s %6zu %9d  %s\n", layer.name.c_str(), name_of(layer.group), layer.parts.size(),
-                 layer.polygons, motion.c_str());
+    text += line("  %-24s %-10s %6zu %9d  %s\n", layer.name.c_str(), name_of(layer.group).c_str(),
+                 layer.parts.size(), layer.polygons, motion.c_str());
   }
+  const Memory memory = memory_of(*s.scene);
   text += line("\n  %zu layers, %d polygons; meshes %.1f MB, textures %.1f MB", s.layers.layers.size(),
                polygons, memory.mesh_bytes / 1e6, memory.texture_bytes / 1e6);
   if (s.layers.unassigned_parts == 1) text += "; 1 part is in no layer and is not drawn";
   if (s.layers.unassigned_parts > 1)
     text += line("; %d parts are in no layer and are not drawn", s.layers.unassigned_parts);
-  text += "\n\n  effect               called  why\n";
+  return text;
+}
+
+std::string effect_lines(const Sequence& s) {
+  std::string text = "  effect               called  why\n";
   for (const layers::EffectCall& call : effects_of(s))
     text += line("  %-20s %-6s  %s%s\n", std::string(layers::name(call.effect)).c_str(),
                  call.called ? "yes" : "no", call.why.c_str(),
                  has_effect(call.effect) ? "" : " (not in this build)");
   return text;
+}
+
+/// The visibility order as a run with the sequence's own settings has it.
+std::string order_of(const Sequence& sequence, const InspectOptions& options) {
+  CommandLine line;
+  line.cycles = options.cycles;
+  line.compositor = options.compositor;
+  const OrderOverTime order = order_over_time(sequence, resolve(line, sequence, true).settings);
+  return options.json ? order_json(sequence, order) : order_text(sequence, order);
+}
+
+}  // namespace
+
+std::string inspection_text(const Sequence& s) {
+  std::string text = line("%s (%s)\n  %d frames at %g/s, %dx%d px, policy %s, warp %s, bound %s\n\n",
+                          s.name.c_str(), s.file.c_str(), s.frames, s.fps, s.display_px.x, s.display_px.y,
+                          std::string(regulator::name(s.regulator.policy)).c_str(), s.warp.c_str(),
+                          name_of(s.bound).c_str());
+  return text + layer_lines(s) + "\n\n" + effect_lines(s);
 }
 
 std::string inspection_json(const Sequence& s) {
@@ -134,6 +138,19 @@ std::string inspection_json(const Sequence& s) {
                      {"effects", effects},
                      {"warnings", s.warnings}};
   return json.dump(2) + "\n";
+}
+
+int run_inspect(const InspectOptions& options, std::ostream& out) {
+  if (options.profile) out << profile_text();
+  if (options.sequence.empty()) {
+    if (options.profile) return kSuccess;
+    throw InputError("inspect needs a SEQUENCE, a MODEL or --profile");
+  }
+  const Sequence sequence = load_with_warnings(options.sequence);
+  out << (options.order  ? order_of(sequence, options)
+          : options.json ? inspection_json(sequence)
+                         : inspection_text(sequence));
+  return kSuccess;
 }
 
 std::string profile_text() {

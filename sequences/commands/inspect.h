@@ -1,14 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What is in a sequence before anything is drawn: layers, polygons, memory, and the effects that it calls
-/// for, with reasons.
+/// `talisman inspect`: what is in a sequence before anything is drawn: layers, polygons, memory, and the
+/// effects that it calls for, with reasons; or its visibility order over time (inspect_order.h).
 
+#include <iosfwd>
 #include <string>
 
 #include "sequences/content/sequence.h"
 
 namespace talisman::sequences {
+
+struct InspectOptions {
+  std::string sequence;            ///< name or path; may be empty where `profile` is asked for
+  std::string cycles, compositor;  ///< of `order`; empty: the sequence's own
+  bool json = false, profile = false, order = false;
+};
+
+/// Throws InputError.
+int run_inspect(const InspectOptions& options, std::ostream& out);
 
 std::string inspection_text(const Sequence& sequence);
 std::string inspection_json(const Sequence& sequence);  ///< schema talisman.inspect/1

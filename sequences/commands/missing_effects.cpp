@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "layers/built_effects.h"
+#include "sequences/experiments/variant.h"
 #include "sequences/files/errors.h"
-#include "sequences/pipeline/run_effects.h"
 
 namespace talisman::sequences {
 
@@ -26,9 +26,7 @@ std::string missing_effect(std::span<const layers::EffectCall> table, const laye
 
 void require_built_effects(const Sequence& sequence, const Settings& settings) {
   if constexpr (kHasAll) return;
-  const auto table =
-      layers::effects_called_for(*sequence.scene, sequence.layers.layers, run_effects(settings));
-  if (const std::string missing = missing_effect(table, kBuilt); !missing.empty())
+  if (const std::string missing = missing_effect(effects_of(sequence, settings), kBuilt); !missing.empty())
     throw InputError(missing, sequence.name);
 }
 

@@ -1,31 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/commands/options.h"
 
-#include <array>
 #include <charconv>
+#include <cstdio>
+#include <tuple>
 #include <utility>
 
 #include <glm/trigonometric.hpp>
 #include "regulator/budget.h"
 #include "sequences/commands/missing_effects.h"
+#include "sequences/commands/words.h"
 
 namespace talisman::sequences {
 
 namespace {
 
-constexpr int kLargestDisplayPx = 16384;
-
-/// The value of a named choice, or an error that lists the choices.
-template <typename T, std::size_t N>
-T choice(const char* option, const std::string& text,
-         const std::array<std::pair<const char*, T>, N>& choices) {
-  std::string names;
-  for (const auto& [name, value] : choices) {
-    if (text == name) return value;
-    names += (names.empty() ? "" : ", ") + std::string(name);
-  }
-  throw InputError(std::string(option) + " is '" + text + "', must be one of " + names);
-}
+constexpr int kLargestDisplay_px = 16384;
 
 std::optional<int> whole_number(std::string_view text) {
   int value = 0;
@@ -46,10 +36,10 @@ std::optional<std::pair<int, int>> two_numbers(const std::string& text, char sep
 
 layers::ivec2 display_from(const std::string& text) {
   const auto size = two_numbers(text, 'x');
-  if (!size || size->first < 1 || size->second < 1 || size->first > kLargestDisplayPx ||
-      size->second > kLargestDisplayPx)
+  if (!size || size->first < 1 || size->second < 1 || size->first > kLargestDisplay_px ||
+      size->second > kLargestDisplay_px)
     throw InputError("--size is '" + text + "', must be WxH with both from 1 to " +
-                     std::to_string(kLargestDisplayPx));
+                     std::to_string(kLargestDisplay_px));
   return {size->first, size->second};
 }
 
@@ -66,41 +56,32 @@ std::pair<int, int> frame_range_from(const std::string& text, int frames) {
 /// Only Lookahead looks at frames that it could be wrong about: the oracle is a floor because it knows them.
 void apply_prediction(const CommandLine& line, regulator::RegulatorOptions& options) {
   if (line.predict.empty()) return;
-  const auto prediction = regulator::prediction_from_name(line.predict);
-  if (!prediction) throw InputError("--predict is '" + line.predict + "', must be one of known, linear");
-  if (*prediction != regulator::Prediction::Known && options.policy != regulator::Policy::Lookahead)
+  const regulator::Prediction prediction = choice("--predict", line.predict, kPredictionWords);
+  if (prediction != regulator::Prediction::Known && options.policy != regulator::Policy::Lookahead)
     throw InputError("--predict is '" + line.predict + "', but --policy is '" +
                      std::string(regulator::name(options.policy)) + "', must be lookahead");
-  options.predict = *prediction;
+  options.predict = prediction;
 }
 
-void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& options) {
-  if (!line.policy.empty()) {
-    const auto policy = regulator::policy_from_name(line.policy);
-    if (!policy) {
-      std::string names;
-      for (const auto p : regulator::kAllPolicies)
-        names += (names.empty() ? "" : ", ") + std::string(regulator::name(p));
-      throw InputError("--policy is '" + line.policy + "', must be one of " + names);
-    }
-    options.policy = *policy;
-  }
-  if (line.geometric_px) options.geometric_px = *line.geometric_px;
-  if (line.photometric) options.photometric = *line.photometric;
-  if (line.light_angle_deg) options.light_angle_rad = glm::radians(*line.light_angle_deg);
-  if (line.turned_px) options.turned_px = *line.turned_px;
-  if (!line.color_warp.empty())
-    options.color_warp =
-        choice("--color-warp", line.color_warp, std::array{std::pair{"on", true}, std::pair{"off", false}});
-  if (line.hold) options.hold_frames = *line.hold;
-  if (line.lookahead) options.lookahead_frames = *line.lookahead;
+void apply_limits(const CommandLine& line, regulator::RegulatorOptions& options) {
   if (line.budget_polygons) options.budget_polygons = *line.budget_polygons;
   if (line.budget_pixels) options.budget_pixels = *line.budget_pixels;
   if (line.budget_chunks) options.budget_chunks = *line.budget_chunks;
   if (line.budget_ms) options.budget_ms = *line.budget_ms;
   if (line.min_resolution) options.min_resolution = *line.min_resolution;
   if (line.cutoff_px) options.cutoff_px = *line.cutoff_px;
-  apply_prediction(line, options);
+}
+
+void apply_thresholds(const CommandLine& line, regulator::RegulatorOptions& options) {
+  if (line.geometric_px) options.geometric_px = *line.geometric_px;
+  if (line.photometric) options.photometric = *line.photometric;
+  if (line.light_angle_deg) options.light_angle_rad = glm::radians(*line.light_angle_deg);
+  if (line.turned_px) options.turned_px = *line.turned_px;
+  if (!line.color_warp.empty()) options.color_warp = choice("--color-warp", line.color_warp, kSwitchWords);
+}
+
+/// What holds only of all options together.
+void require_consistent(const CommandLine& line, const regulator::RegulatorOptions& options) {
   if (options.policy == regulator::Policy::Budget && !regulator::is_limited(options))
     throw InputError(
         "--policy is 'budget', must come with --budget-polygons, --budget-pixels, --budget-chunks or "
@@ -109,6 +90,16 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
     throw InputError("--budget-gap compares choices within a budget, but --policy is '" +
                      std::string(regulator::name(options.policy)) + "', must be budget");
   if (const std::string defect = regulator::first_defect(options); !defect.empty()) throw InputError(defect);
+}
+
+void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& options) {
+  if (!line.policy.empty()) options.policy = choice("--policy", line.policy, kPolicyWords);
+  apply_thresholds(line, options);
+  if (line.hold) options.hold_frames = *line.hold;
+  if (line.lookahead) options.lookahead_frames = *line.lookahead;
+  apply_limits(line, options);
+  apply_prediction(line, options);
+  require_consistent(line, options);
 }
 
 warp::Curve curve_from(const std::string& text) {
@@ -140,61 +131,56 @@ std::optional<chunker::CompressionOptions> compression_from(const CommandLine& l
   return chunker::CompressionOptions{quality};
 }
 
-}  // namespace
+/// The word of an option where it was given, else what the sequence says.
+template <typename T, std::size_t N>
+T chosen(const char* option, const std::string& text, const Words<T, N>& words, T otherwise) {
+  return text.empty() ? otherwise : choice(option, text, words);
+}
 
-ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {
-  ResolvedRun run;
-  Settings& settings = run.settings;
-  settings.regulator = sequence.regulator;
-  apply_regulator(line, settings.regulator);
-  settings.curve = curve_from(line.warp.empty() ? sequence.warp : line.warp);
-  settings.view.display_px = line.size.empty() ? sequence.display_px : display_from(line.size);
-  if (sequence.clip_margin) settings.view.clip_margin = *sequence.clip_margin;
-  settings.bound = line.bound.empty() ? sequence.bound
-                                      : choice("--bound", line.bound,
-                                               std::array{std::pair{"box8", layers::BoundKind::Box8},
-                                                          std::pair{"dop14", layers::BoundKind::Dop14},
-                                                          std::pair{"dop26", layers::BoundKind::Dop26}});
+/// How layers are bounded, ordered and put together.
+void apply_order(const CommandLine& line, const Sequence& sequence, Settings& settings) {
+  settings.bound = chosen("--bound", line.bound, kBoundWords, sequence.bound);
   settings.explicit_order = sequence.explicit_order;
-  settings.cycles =
-      line.cycles.empty()
-          ? sequence.cycles
-          : choice("--cycles", line.cycles,
-                   std::array{std::pair{"merge", Cycles::Merge}, std::pair{"keep", Cycles::Keep}});
-  settings.compositor = line.compositor.empty()
-                            ? sequence.compositor
-                            : choice("--compositor", line.compositor,
-                                     std::array{std::pair{"talisman", Compositor::Talisman},
-                                                std::pair{"extended", Compositor::Extended}});
+  settings.cycles = chosen("--cycles", line.cycles, kCyclesWords, sequence.cycles);
+  settings.compositor = chosen("--compositor", line.compositor, kCompositorWords, sequence.compositor);
+}
+
+/// How large, how dense and how shaded sprites are.
+void apply_sprites(const CommandLine& line, const Sequence& sequence, Settings& settings) {
   settings.extents = sequence.extents;
   if (line.expected_reuse)
     settings.extents.expected_reuse_frames = positive("--expected-reuse", *line.expected_reuse, 1e4);
   settings.placement = sequence.placement;
   if (line.resolution) settings.placement.resolution_scale = positive("--resolution", *line.resolution, 4);
-  if (!line.shading.empty())
-    settings.render.shading = choice(
-        "--shading", line.shading,
-        std::array{std::pair{"flat", chunker::Shading::Flat}, std::pair{"gouraud", chunker::Shading::Gouraud},
-                   std::pair{"phong", chunker::Shading::Phong}});
+  settings.render.shading = chosen("--shading", line.shading, kShadingWords, settings.render.shading);
   settings.compression = compression_from(line, sequence, settings.regulator.policy);
+}
+
+Settings settings_of(const CommandLine& line, const Sequence& sequence) {
+  Settings settings;
+  settings.regulator = sequence.regulator;
+  apply_regulator(line, settings.regulator);
+  settings.curve = curve_from(line.warp.empty() ? sequence.warp : line.warp);
+  settings.view.display_px = line.size.empty() ? sequence.display_px : display_from(line.size);
+  if (sequence.clip_margin) settings.view.clip_margin = *sequence.clip_margin;
+  apply_order(line, sequence, settings);
+  apply_sprites(line, sequence, settings);
   settings.fps = sequence.fps;
   settings.frames = sequence.frames;
   settings.budget_gap = line.budget_gap;
+  return settings;
+}
 
-  RunOptions& options = run.options;
+RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, bool plan_only) {
+  RunOptions options;
   options.plan_only = plan_only;
   options.out = !line.out.empty() ? line.out : "out/" + sequence.name + (plan_only ? "-plan" : "");
   options.first_frame = 0;
   options.last_frame = sequence.frames - 1;
   if (!line.frames.empty())
     std::tie(options.first_frame, options.last_frame) = frame_range_from(line.frames, sequence.frames);
-  options.format = choice("--format", line.format,
-                          std::array{std::pair{"png", FrameFormat::Png}, std::pair{"exr", FrameFormat::Exr},
-                                     std::pair{"none", FrameFormat::None}});
-  options.progress =
-      choice("--progress", line.progress,
-             std::array{std::pair{"auto", ProgressKind::Auto}, std::pair{"bar", ProgressKind::Bar},
-                        std::pair{"plain", ProgressKind::Plain}, std::pair{"none", ProgressKind::None}});
+  options.format = choice("--format", line.format, kFormatWords);
+  options.progress = choice("--progress", line.progress, kProgressWords);
   options.video = line.video;
   options.separate = line.separate;
   options.overlay = line.overlay;
@@ -206,7 +192,20 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
     throw InputError("--overlay is drawn on png frames, but --format is " + line.format);
   if (line.threads < 0)
     throw InputError("--threads is " + std::to_string(line.threads) + ", must be at least 0 (0: all cores)");
-  require_built_effects(sequence, settings);
+  return options;
+}
+
+}  // namespace
+
+Sequence load_with_warnings(const std::string& name_or_path) {
+  Sequence sequence = load_sequence(name_or_path);
+  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  return sequence;
+}
+
+ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {
+  const ResolvedRun run{settings_of(line, sequence), run_options_of(line, sequence, plan_only)};
+  require_built_effects(sequence, run.settings);
   return run;
 }
 

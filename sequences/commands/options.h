@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "sequences/content/sequence.h"
 #include "sequences/results/run.h"
 
 namespace talisman::sequences {
@@ -34,6 +35,9 @@ struct ResolvedRun {
   Settings settings;
   RunOptions options;
 };
+
+/// Reads the sequence and says its warnings on stderr, "warning: " before each. Throws InputError.
+Sequence load_with_warnings(const std::string& name_or_path);
 
 /// Checks every value and joins it with the sequence's defaults. Throws InputError that names option, value
 /// and rule, or the effect that the run calls for and this build lacks.

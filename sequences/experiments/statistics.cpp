@@ -71,4 +71,24 @@ double quantile(std::span<const double> values, double q) {
   return sorted[below] + (place - static_cast<double>(below)) * (sorted[above] - sorted[below]);
 }
 
+double median(std::span<const double> values) { return quantile(values, 0.5); }
+
+std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error,
+                               double least_gain) {
+  TALISMAN_CHECK_EQ(cost.size(), error.size());
+  std::vector<std::size_t> order;
+  for (std::size_t k = 0; k < cost.size(); ++k)
+    if (!std::isnan(cost[k]) && !std::isnan(error[k])) order.push_back(k);
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return cost[a] != cost[b] ? cost[a] < cost[b] : error[a] < error[b];
+  });
+  std::vector<bool> front(cost.size(), false);
+  double best = HUGE_VAL;
+  for (const std::size_t k : order)
+    if (error[k] < best * (1 - least_gain)) front[k] = true, best = error[k];
+  return front;
+}
+
+double rms_code_values(double psnr_db) { return 255 * std::pow(10, -psnr_db / 20); }
+
 }  // namespace talisman::sequences

@@ -2,7 +2,7 @@
 
 /// What does an effect cost that a scene does not call for? One process of that measurement: a sequence that
 /// calls for every effect (tests/support/sequences.h), one effect taken away from it
-/// (sequences/experiments/without_effect.h), is planned, drawn and composited on one thread. tests/bench/effect_builds
+/// (sequences/experiments/effect_removal.h), is planned, drawn and composited on one thread. tests/bench/effect_builds
 /// runs it in the normal build and in one that was configured without the effect, and compares.
 ///
 ///   effects_bench EFFECT|none [--frames N] [--repeats N] [--size WxH]

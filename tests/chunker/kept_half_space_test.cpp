@@ -133,17 +133,17 @@ TEST(KeptHalfSpace, SphereMatchesTheRayTracedOne) {
 }
 
 TEST(KeptHalfSpace, EqualsTheReferenceInEveryTermAndShading) {
-  Stage stage;
+  ShadeScene shaded;
   const HalfSpace kept = through({-0.4, 0.9, 0}, {0.4, 1, 0.3});  // through the cube's centre
   for (const ShadeTerm term : {ShadeTerm::Full, ShadeTerm::Shadow, ShadeTerm::Specular})
     for (const Shading shading : {Shading::Flat, Shading::Phong}) {
       RenderOptions options = exact_options();
       options.shading = shading;
-      ShadeInputs inputs = stage.inputs(term);
-      const Sprite whole = stage.render(inputs, options).sprite;
+      ShadeInputs inputs = shaded.inputs(term);
+      const Sprite whole = shaded.render(inputs, options).sprite;
       inputs.kept = kept;
-      const Sprite cut = stage.render(inputs, options).sprite;
-      expect_same(cut, stage.reference(inputs, options), name_of(term));
+      const Sprite cut = shaded.render(inputs, options).sprite;
+      expect_same(cut, shaded.reference(inputs, options), name_of(term));
       EXPECT_GT(difference(cut, whole).texels, 20);
     }
 }
@@ -152,24 +152,24 @@ TEST(KeptHalfSpace, EqualsTheReferenceInEveryTermAndShading) {
 
 // None asked for, one that is none, and one that cuts nothing: the same picture and the same work.
 TEST(KeptHalfSpace, PlanesThatCutNothingChangeNothing) {
-  Stage stage;
-  const RenderResult whole = stage.render(stage.inputs());
+  ShadeScene shaded;
+  const RenderResult whole = shaded.render(shaded.inputs());
   for (const HalfSpace& none :
        {HalfSpace{{0, 0, 0}, 1}, HalfSpace{{kNaN, 0, 1}, 0}, HalfSpace{{0, 1, 0}, kNaN},
         HalfSpace{{HUGE_VAL, 1, 0}, 0}, HalfSpace{{0, 1, 0}, -1e6}}) {
-    ShadeInputs inputs = stage.inputs();
+    ShadeInputs inputs = shaded.inputs();
     inputs.kept = none;
-    const RenderResult same = stage.render(inputs);
+    const RenderResult same = shaded.render(inputs);
     expect_same(same.sprite, whole.sprite, std::to_string(none.offset));
     EXPECT_EQ(same.counters, whole.counters);
   }
 }
 
 TEST(KeptHalfSpace, WhollyBehindCostsNoTriangle) {
-  Stage stage;
-  ShadeInputs inputs = stage.inputs();
+  ShadeScene shaded;
+  ShadeInputs inputs = shaded.inputs();
   inputs.kept = HalfSpace{{0, 1, 0}, 1e3};
-  const RenderResult nothing = stage.render(inputs);
+  const RenderResult nothing = shaded.render(inputs);
   EXPECT_EQ(nothing.counters.polygons_drawn, 0);
   EXPECT_EQ(nothing.sprite.stored_chunks(), 0);
 }
@@ -231,12 +231,12 @@ TEST(KeptHalfSpace, PlaneThroughTheEyeIsALine) {
 // --- Mirrors
 
 /// A cube that reaches through the mirror y = 0.
-Stage sunken_stage() {
-  Stage stage;
-  stage.size = {80, 60};
-  stage.scene.nodes[Stage::kCube].local.translation.y = 0.1;
-  for (layers::Material& material : stage.scene.materials) material.unlit = true;
-  return stage;
+ShadeScene sunken_stage() {
+  ShadeScene shaded;
+  shaded.size = {80, 60};
+  shaded.scene.nodes[ShadeScene::kCube].local.translation.y = 0.1;
+  for (layers::Material& material : shaded.scene.materials) material.unlit = true;
+  return shaded;
 }
 
 Sprite draw_cube(const layers::Scene& scene, const layers::SceneFrame& frame, ivec2 size,
@@ -244,45 +244,45 @@ Sprite draw_cube(const layers::Scene& scene, const layers::SceneFrame& frame, iv
   const PreparedScene prepared(scene);
   ShadeInputs inputs;
   inputs.kept = kept;
-  return chunker::render(prepared, frame, std::vector<int>{Stage::kCube}, size, display_placement(size),
+  return chunker::render(prepared, frame, std::vector<int>{ShadeScene::kCube}, size, display_placement(size),
                          exact_options(), inputs)
       .sprite;
 }
 
 // The oracle turns the world over instead of the camera, and cuts it there.
 TEST(BeforeMirror, CutsOffWhatIsBehindTheMirror) {
-  Stage stage = sunken_stage(), world = sunken_stage();
-  world.scene.nodes[Stage::kCube].local.translation.y *= -1;
-  world.scene.nodes[Stage::kCube].local.scale.y *= -1;
-  const layers::SceneFrame frame = stage.scene.at(0), mirrored = mirrored_frame(frame, dvec3(0), {0, 1, 0});
+  ShadeScene shaded = sunken_stage(), world = sunken_stage();
+  world.scene.nodes[ShadeScene::kCube].local.translation.y *= -1;
+  world.scene.nodes[ShadeScene::kCube].local.scale.y *= -1;
+  const layers::SceneFrame frame = shaded.scene.at(0), mirrored = mirrored_frame(frame, dvec3(0), {0, 1, 0});
   const auto kept = before_mirror(frame, dvec3(0), {0, 1, 0});
-  const Sprite seen = draw_cube(stage.scene, mirrored, stage.size, kept),
-               expected = draw_cube(world.scene, world.scene.at(0), stage.size, HalfSpace{{0, -1, 0}, 0}),
-               uncut = draw_cube(stage.scene, mirrored, stage.size, std::nullopt);
+  const Sprite seen = draw_cube(shaded.scene, mirrored, shaded.size, kept),
+               expected = draw_cube(world.scene, world.scene.at(0), shaded.size, HalfSpace{{0, -1, 0}, 0}),
+               uncut = draw_cube(shaded.scene, mirrored, shaded.size, std::nullopt);
   EXPECT_LE(difference(seen, expected).texels, 5);  // a vertex may snap to the other side of a half
   EXPECT_GT(covered_texels(seen), 100);
   EXPECT_GT(covered_texels(uncut), covered_texels(seen) + 50);
 }
 
 TEST(BeforeMirror, IsTheEyesSideWhicheverThatIs) {
-  Stage stage;
+  ShadeScene shaded;
   const dvec3 above(0, 5, 0), below(0, -5, 0);
   for (const double height : {2.5, -2.5}) {
-    stage.scene.nodes[3].local.translation.y = height;
+    shaded.scene.nodes[3].local.translation.y = height;
     for (const dvec3& normal : {dvec3(0, 2, 0), dvec3(0, -3, 0)}) {
-      const auto kept = before_mirror(stage.scene.at(0), dvec3(0), normal);
+      const auto kept = before_mirror(shaded.scene.at(0), dvec3(0), normal);
       ASSERT_TRUE(kept);
       EXPECT_EQ(kept->height(above) > 0, height > 0) << normal.y;
       EXPECT_EQ(kept->height(below) > 0, height < 0) << normal.y;
     }
   }
   // In the plane itself either side would do.
-  stage.scene.nodes[3].local.translation.y = 0;
-  EXPECT_EQ(before_mirror(stage.scene.at(0), dvec3(0), {0, 1, 0})->height(above), 5);
+  shaded.scene.nodes[3].local.translation.y = 0;
+  EXPECT_EQ(before_mirror(shaded.scene.at(0), dvec3(0), {0, 1, 0})->height(above), 5);
 }
 
 TEST(BeforeMirror, DegeneratePlanesCutNothing) {
-  const layers::SceneFrame frame = Stage().scene.at(0);
+  const layers::SceneFrame frame = ShadeScene().scene.at(0);
   for (const dvec3& normal : {dvec3(0), dvec3(kNaN, 0, 0), dvec3(HUGE_VAL, 1, 0)})
     EXPECT_FALSE(before_mirror(frame, dvec3(0), normal));
   EXPECT_FALSE(before_mirror(frame, dvec3(kNaN), {0, 1, 0}));
@@ -292,8 +292,8 @@ TEST(BeforeMirror, DegeneratePlanesCutNothing) {
 
 // Each part looks up the picture that names it: in one pass as in a pass for each.
 TEST(Reflections, EachPartLooksUpItsOwn) {
-  Stage stage;
-  stage.scene.materials[Stage::kCube].reflectivity = 0.5f;
+  ShadeScene shaded;
+  shaded.scene.materials[ShadeScene::kCube].reflectivity = 0.5f;
   const Sprite red = [] {
     Sprite sprite({45, 37});
     Chunk chunk;
@@ -301,14 +301,14 @@ TEST(Reflections, EachPartLooksUpItsOwn) {
     sprite.store(0, 0, chunk);
     return sprite;
   }();
-  const ShadeInputs one = stage.inputs(ShadeTerm::Reflection);
-  const std::vector<int> floor{Stage::kFloor}, cube{Stage::kCube};
+  const ShadeInputs one = shaded.inputs(ShadeTerm::Reflection);
+  const std::vector<int> floor{ShadeScene::kFloor}, cube{ShadeScene::kCube};
   const Reflection of_floor{one.reflections[0].picture, {}, floor}, of_cube{&red, {}, cube};
   const auto draw = [&](std::vector<Reflection> reflections) {
     ShadeInputs inputs = one;
     inputs.reflections = reflections;
-    const LinearImage image = stage.linear(inputs, exact_options());
-    expect_same(stage.render(inputs, exact_options()).sprite, stage.reference(inputs, exact_options()),
+    const LinearImage image = shaded.linear(inputs, exact_options());
+    expect_same(shaded.render(inputs, exact_options()).sprite, shaded.reference(inputs, exact_options()),
                 std::to_string(reflections.size()));
     return image;
   };
@@ -327,17 +327,17 @@ TEST(Reflections, EachPartLooksUpItsOwn) {
 // --- Blends of some parts
 
 TEST(TextureBlends, StandInForTheMaterials) {
-  Stage stage, authored;
-  for (Stage* s : {&stage, &authored}) s->scene.materials[Stage::kFloor].texture2 = 1;
-  authored.scene.materials[Stage::kFloor].texture_blend = {0.25f, 0.75f};
-  const std::vector<int> floor{Stage::kFloor}, cube{Stage::kCube};
+  ShadeScene shaded, authored;
+  for (ShadeScene* s : {&shaded, &authored}) s->scene.materials[ShadeScene::kFloor].texture2 = 1;
+  authored.scene.materials[ShadeScene::kFloor].texture_blend = {0.25f, 0.75f};
+  const std::vector<int> floor{ShadeScene::kFloor}, cube{ShadeScene::kCube};
   const TextureBlend of_floor{{0.25f, 0.75f}, floor}, of_cube{{0, 1}, cube};
   for (const ShadeTerm term : {ShadeTerm::Full, ShadeTerm::Base}) {
-    ShadeInputs inputs = stage.inputs(term);
-    const Sprite plain = stage.render(inputs).sprite;
+    ShadeInputs inputs = shaded.inputs(term);
+    const Sprite plain = shaded.render(inputs).sprite;
     const std::vector<TextureBlend> blends{of_cube, of_floor};
     inputs.texture_blends = blends;
-    const Sprite blended = stage.render(inputs).sprite;
+    const Sprite blended = shaded.render(inputs).sprite;
     expect_same(blended, authored.render(authored.inputs(term)).sprite, name_of(term));
     EXPECT_GT(difference(blended, plain).texels, 100);
   }

@@ -17,24 +17,24 @@ float channel(const Linear16& c, int k) {
 }
 
 /// One light with a shadow, and a narrow floor, so that shadows fall across its edges.
-Stage narrow_stage() {
-  Stage stage;
-  stage.size = {120, 90};
-  stage.scene.lights[Stage::kSun].casts_shadow = false;
-  stage.scene.lights[Stage::kSun].color = vec3(0);
-  stage.scene.nodes[Stage::kFloor].local.scale = {0.35, 0.35, 0.35};
-  return stage;
+ShadeScene narrow_stage() {
+  ShadeScene shaded;
+  shaded.size = {120, 90};
+  shaded.scene.lights[ShadeScene::kSun].casts_shadow = false;
+  shaded.scene.lights[ShadeScene::kSun].color = vec3(0);
+  shaded.scene.nodes[ShadeScene::kFloor].local.scale = {0.35, 0.35, 0.35};
+  return shaded;
 }
 
 const vec3 kBehind{0.1f, 0.3f, 0.05f};
 
 TEST(Multipass, FactoredErrorIsThePredictedOne) {
-  Stage stage = narrow_stage();
-  const LinearImage unfactored = stage.multipass(stage.inputs()),
-                    base = stage.linear(stage.inputs(ShadeTerm::Base)),
-                    shadow = stage.linear(stage.inputs(ShadeTerm::Shadow, Stage::kSpot)),
-                    specular = stage.linear(stage.inputs(ShadeTerm::Specular)),
-                    reflection = stage.linear(stage.inputs(ShadeTerm::Reflection));
+  ShadeScene shaded = narrow_stage();
+  const LinearImage unfactored = shaded.multipass(shaded.inputs()),
+                    base = shaded.linear(shaded.inputs(ShadeTerm::Base)),
+                    shadow = shaded.linear(shaded.inputs(ShadeTerm::Shadow, ShadeScene::kSpot)),
+                    specular = shaded.linear(shaded.inputs(ShadeTerm::Specular)),
+                    reflection = shaded.linear(shaded.inputs(ShadeTerm::Reflection));
   const LinearColor behind{kBehind.x, kBehind.y, kBehind.z, 1};
   float largest = 0, unexplained = 0;
   int elsewhere = 0;
@@ -59,20 +59,20 @@ TEST(Multipass, FactoredErrorIsThePredictedOne) {
 
 // The same with the sprites of four bytes and the compositor as they are.
 TEST(Multipass, CompositedSpritesMatchThePredictionWithinTheirRounding) {
-  Stage stage = narrow_stage();
-  const Sprite sprites[] = {stage.render(stage.inputs(ShadeTerm::Base)).sprite,
-                            stage.render(stage.inputs(ShadeTerm::Shadow, Stage::kSpot)).sprite,
-                            stage.render(stage.inputs(ShadeTerm::Specular)).sprite,
-                            stage.render(stage.inputs(ShadeTerm::Reflection)).sprite};
+  ShadeScene shaded = narrow_stage();
+  const Sprite sprites[] = {shaded.render(shaded.inputs(ShadeTerm::Base)).sprite,
+                            shaded.render(shaded.inputs(ShadeTerm::Shadow, ShadeScene::kSpot)).sprite,
+                            shaded.render(shaded.inputs(ShadeTerm::Specular)).sprite,
+                            shaded.render(shaded.inputs(ShadeTerm::Reflection)).sprite};
   std::vector<PlacedSprite> placed;
   for (const Sprite& sprite : sprites) {
     placed.emplace_back();
     placed.back().sprite = &sprite;
   }
-  const Frame factored = composite(placed, stage.size, kBehind).frame;
-  const LinearImage unfactored = stage.multipass(stage.inputs()),
-                    base = stage.linear(stage.inputs(ShadeTerm::Base)),
-                    shadow = stage.linear(stage.inputs(ShadeTerm::Shadow, Stage::kSpot));
+  const Frame factored = composite(placed, shaded.size, kBehind).frame;
+  const LinearImage unfactored = shaded.multipass(shaded.inputs()),
+                    base = shaded.linear(shaded.inputs(ShadeTerm::Base)),
+                    shadow = shaded.linear(shaded.inputs(ShadeTerm::Shadow, ShadeScene::kSpot));
   const LinearColor behind{kBehind.x, kBehind.y, kBehind.z, 1};
   float unexplained = 0;
   double squares = 0;
@@ -95,9 +95,9 @@ TEST(Multipass, CompositedSpritesMatchThePredictionWithinTheirRounding) {
 // In one pass every sample has its own shadow; in several passes means are multiplied. They differ only where
 // colour and shadow vary together inside a texel.
 TEST(Multipass, DiffersFromOnePassOnlyWhereTexelsAreMixed) {
-  Stage stage = narrow_stage();
-  const LinearImage unfactored = stage.multipass(stage.inputs(), exact_options()),
-                    full = stage.linear(stage.inputs(), exact_options());
+  ShadeScene shaded = narrow_stage();
+  const LinearImage unfactored = shaded.multipass(shaded.inputs(), exact_options()),
+                    full = shaded.linear(shaded.inputs(), exact_options());
   std::vector<float> differences;
   for (std::size_t i = 0; i < full.texels.size(); ++i) {
     EXPECT_EQ(full.texels[i].a, unfactored.texels[i].a);
@@ -112,14 +112,14 @@ TEST(Multipass, DiffersFromOnePassOnlyWhereTexelsAreMixed) {
 }
 
 TEST(Multipass, MakesOnlyThePassesThatAreCalledFor) {
-  Stage stage = narrow_stage();
-  const std::int64_t one = stage.render({}).counters.polygons_in;
-  EXPECT_EQ(stage.multipass(stage.inputs()).counters.polygons_in, 5 * one);  // the sun still has a map
-  for (layers::Material& material : stage.scene.materials) {
+  ShadeScene shaded = narrow_stage();
+  const std::int64_t one = shaded.render({}).counters.polygons_in;
+  EXPECT_EQ(shaded.multipass(shaded.inputs()).counters.polygons_in, 5 * one);  // the sun still has a map
+  for (layers::Material& material : shaded.scene.materials) {
     material.specular = vec3(0);
     material.reflectivity = 0;
   }
-  EXPECT_EQ(stage.multipass({}).counters.polygons_in, one);
+  EXPECT_EQ(shaded.multipass({}).counters.polygons_in, one);
 }
 
 TEST(PredictedFactoringError, VanishesWhereItMust) {
@@ -133,24 +133,24 @@ TEST(PredictedFactoringError, VanishesWhereItMust) {
 }
 
 TEST(EncodeSprite, IsWhatRenderGives) {
-  Stage stage;
+  ShadeScene shaded;
   const Difference d =
-      difference(encode_sprite(stage.linear(stage.inputs())), stage.render(stage.inputs()).sprite);
+      difference(encode_sprite(shaded.linear(shaded.inputs())), shaded.render(shaded.inputs()).sprite);
   EXPECT_EQ(d.texels, 0);
 }
 
 // --- Mirrors
 
 TEST(MirroredFrame, PointsOfTheMirrorKeepTheirPlaceAndTwiceIsOnce) {
-  Stage stage;
-  const layers::SceneFrame frame = stage.scene.at(0);
+  ShadeScene shaded;
+  const layers::SceneFrame frame = shaded.scene.at(0);
   const dvec3 point(0.3, -0.2, 0.1), normal(0.2, 3, -0.4);
   const layers::SceneFrame mirrored = mirrored_frame(frame, point, normal),
                            twice = mirrored_frame(mirrored, point, normal);
   const dvec3 across = glm::normalize(glm::cross(normal, dvec3(1, 0, 0)));
   const glm::dvec4 p(point + across * 0.7, 1);
-  const glm::dvec4 a = layers::clip_from_world(frame.camera, stage.size) * p,
-                   b = layers::clip_from_world(mirrored.camera, stage.size) * p;
+  const glm::dvec4 a = layers::clip_from_world(frame.camera, shaded.size) * p,
+                   b = layers::clip_from_world(mirrored.camera, shaded.size) * p;
   EXPECT_NEAR(a.x / a.w, b.x / b.w, 1e-12);
   EXPECT_NEAR(a.y / a.w, b.y / b.w, 1e-12);
   for (int column = 0; column < 4; ++column)
@@ -160,7 +160,7 @@ TEST(MirroredFrame, PointsOfTheMirrorKeepTheirPlaceAndTwiceIsOnce) {
 }
 
 TEST(MirroredFrame, DegeneratePlanesLeaveTheCamera) {
-  const layers::SceneFrame frame = Stage().scene.at(0);
+  const layers::SceneFrame frame = ShadeScene().scene.at(0);
   const double nan = std::nan(""), inf = HUGE_VAL;
   for (const dvec3& normal : {dvec3(0), dvec3(nan, 0, 0), dvec3(inf, 1, 0)})
     EXPECT_EQ(mirrored_frame(frame, dvec3(0), normal).camera, frame.camera);
@@ -169,48 +169,48 @@ TEST(MirroredFrame, DegeneratePlanesLeaveTheCamera) {
 
 // The mirrored camera sees what the camera would see of a mirrored world: fronts stay fronts.
 TEST(MirroredFrame, ShowsTheMirroredWorld) {
-  Stage stage;
-  stage.size = {80, 60};
-  for (layers::Material& material : stage.scene.materials) material.unlit = true;
-  Stage world = stage;
-  for (const int node : {Stage::kCube, Stage::kBall}) {
+  ShadeScene shaded;
+  shaded.size = {80, 60};
+  for (layers::Material& material : shaded.scene.materials) material.unlit = true;
+  ShadeScene world = shaded;
+  for (const int node : {ShadeScene::kCube, ShadeScene::kBall}) {
     world.scene.nodes[node].local.translation.y *= -1;
     world.scene.nodes[node].local.scale.y *= -1;
   }
-  const std::vector<int> parts{Stage::kCube, Stage::kBall};
-  const PreparedScene prepared(stage.scene), prepared_world(world.scene);
-  const auto placement = display_placement(stage.size);
-  const Sprite seen = chunker::render(prepared, mirrored_frame(stage.scene.at(0), dvec3(0), {0, 1, 0}), parts,
-                                      stage.size, placement)
+  const std::vector<int> parts{ShadeScene::kCube, ShadeScene::kBall};
+  const PreparedScene prepared(shaded.scene), prepared_world(world.scene);
+  const auto placement = display_placement(shaded.size);
+  const Sprite seen = chunker::render(prepared, mirrored_frame(shaded.scene.at(0), dvec3(0), {0, 1, 0}),
+                                      parts, shaded.size, placement)
                           .sprite;
   const Sprite expected =
-      chunker::render(prepared_world, world.scene.at(0), parts, stage.size, placement).sprite;
+      chunker::render(prepared_world, world.scene.at(0), parts, shaded.size, placement).sprite;
   EXPECT_GT(covered_texels(seen), 100);
   EXPECT_LE(difference(seen, expected).texels, 5);  // a vertex may snap to the other side of a half
 }
 
 // A mirror through the eye is seen edge-on: nothing to reflect, and nothing that is not a number.
 TEST(MirroredFrame, PlaneThroughTheEye) {
-  Stage stage;
-  const layers::SceneFrame frame = stage.scene.at(0);
+  ShadeScene shaded;
+  const layers::SceneFrame frame = shaded.scene.at(0);
   const dvec3 eye(frame.camera.world_from_camera[3]);
   const layers::SceneFrame mirrored = mirrored_frame(frame, eye, {0, 1, 0});
   EXPECT_NEAR(glm::length(dvec3(mirrored.camera.world_from_camera[3]) - eye), 0, 1e-12);
-  const PreparedScene prepared(stage.scene);
-  const RenderResult result =
-      chunker::render(prepared, mirrored, all_parts(stage.scene), stage.size, display_placement(stage.size));
-  EXPECT_EQ(result.sprite.size_px(), stage.size);
+  const PreparedScene prepared(shaded.scene);
+  const RenderResult result = chunker::render(prepared, mirrored, all_parts(shaded.scene), shaded.size,
+                                              display_placement(shaded.size));
+  EXPECT_EQ(result.sprite.size_px(), shaded.size);
 }
 
 // The reflection of the cube appears in the floor before it, where the mirrored cube is seen.
 TEST(Reflection, AddsWhatTheMirrorShows) {
-  Stage stage;
-  stage.scene.parts.resize(2);
-  const LinearImage with = stage.linear(stage.inputs(), exact_options()),
-                    term = stage.linear(stage.inputs(ShadeTerm::Reflection), exact_options());
-  ShadeInputs without = stage.inputs();
+  ShadeScene shaded;
+  shaded.scene.parts.resize(2);
+  const LinearImage with = shaded.linear(shaded.inputs(), exact_options()),
+                    term = shaded.linear(shaded.inputs(ShadeTerm::Reflection), exact_options());
+  ShadeInputs without = shaded.inputs();
   without.reflections = {};
-  const LinearImage plain = stage.linear(without, exact_options());
+  const LinearImage plain = shaded.linear(without, exact_options());
   float most = 0;
   for (std::size_t i = 0; i < with.texels.size(); ++i) {
     EXPECT_NEAR(with.texels[i].r, plain.texels[i].r + term.texels[i].r, 1e-6f);

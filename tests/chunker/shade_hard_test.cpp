@@ -13,14 +13,14 @@ namespace {
 
 constexpr float kAmbient = 0.2f;
 
-/// The floor of the stage, alone and matte, under ambient light and one sun; other parts cast at most.
+/// The floor of the scene, alone and matte, under ambient light and one sun; other parts cast at most.
 struct Floor {
   Floor() {
-    stage.scene.lights.resize(2);
-    stage.scene.lights[1] = {};
-    stage.scene.lights[1].direction = {1, -2, -0.5};
-    stage.scene.lights[1].color = vec3(0.4f, 0.35f, 0.3f);
-    layers::Material& material = stage.scene.materials[Stage::kFloor];
+    shaded.scene.lights.resize(2);
+    shaded.scene.lights[1] = {};
+    shaded.scene.lights[1].direction = {1, -2, -0.5};
+    shaded.scene.lights[1].color = vec3(0.4f, 0.35f, 0.3f);
+    layers::Material& material = shaded.scene.materials[ShadeScene::kFloor];
     material.specular = vec3(0);
     material.texture = -1;
     material.reflectivity = 0;
@@ -28,26 +28,26 @@ struct Floor {
 
   LinearImage draw(ShadeTerm term, std::span<const ShadowMap* const> maps,
                    const RenderOptions& options = exact_options()) const {
-    const PreparedScene prepared(stage.scene);
+    const PreparedScene prepared(shaded.scene);
     ShadeInputs inputs;
     inputs.term = term;
     inputs.shadow_maps = maps;
-    return render_linear(prepared, stage.scene.at(0), std::vector<int>{Stage::kFloor}, stage.size,
-                         display_placement(stage.size), options, inputs);
+    return render_linear(prepared, shaded.scene.at(0), std::vector<int>{ShadeScene::kFloor}, shaded.size,
+                         display_placement(shaded.size), options, inputs);
   }
   LinearImage draw_with(ShadeTerm term, std::span<const int> casters, int resolution_px = 256,
                         const RenderOptions& options = exact_options()) const {
     layers::ShadowMapOptions shadow;
     shadow.resolution_px = resolution_px;
-    const ShadowMap map = make_shadow_map(stage.scene.at(0), 1, casters, shadow);
+    const ShadowMap map = make_shadow_map(shaded.scene.at(0), 1, casters, shadow);
     const std::vector<const ShadowMap*> maps{nullptr, &map};
     return draw(term, maps, options);
   }
 
-  Stage stage;
+  ShadeScene shaded;
 };
 
-const std::vector<int> kCube{Stage::kCube};
+const std::vector<int> kCube{ShadeScene::kCube};
 constexpr Shading kShadings[] = {Shading::Flat, Shading::Gouraud, Shading::Phong};
 
 int covered(const LinearImage& image) {
@@ -61,12 +61,12 @@ int covered(const LinearImage& image) {
 // A lamp inside a closed box: outside of it the world looks as if the lamp were not there.
 TEST(HardShadow, LightInsideAnObjectLightsNothingOutside) {
   Floor floor;
-  layers::Light& lamp = floor.stage.scene.lights[1];
+  layers::Light& lamp = floor.shaded.scene.lights[1];
   lamp.kind = layers::Light::Kind::Point;
   lamp.color = vec3(0.4f);  // of one hue with the ambient light: a shadow is one number for three channels
   lamp.position = {-0.35, 0.8, 0.02};  // the cube spans (-0.9, 0.4, -0.5) to (0.1, 1.4, 0.5)
   Floor dark = floor;
-  dark.stage.scene.lights.resize(1);
+  dark.shaded.scene.lights.resize(1);
   const LinearImage expected = dark.draw(ShadeTerm::Full, {}), without = floor.draw(ShadeTerm::Full, {});
   // Gouraud interpolates light and shares of light apart from each other: only near.
   for (const Shading shading : {Shading::Flat, Shading::Phong}) {
@@ -85,9 +85,9 @@ TEST(HardShadow, LightInsideAnObjectLightsNothingOutside) {
 // Light that comes from behind the floor: no shadow, and the picture of ambient light alone.
 TEST(HardShadow, LightBehindTheReceiverIsAmbientAlone) {
   Floor floor;
-  floor.stage.scene.lights[1].direction = {0.3, 1, 0.2};
+  floor.shaded.scene.lights[1].direction = {0.3, 1, 0.2};
   Floor dark = floor;
-  dark.stage.scene.lights.resize(1);
+  dark.shaded.scene.lights.resize(1);
   const LinearImage shadow = floor.draw_with(ShadeTerm::Shadow, kCube),
                     full = floor.draw_with(ShadeTerm::Full, kCube), expected = dark.draw(ShadeTerm::Full, {});
   EXPECT_GT(covered(expected), 500);
@@ -101,11 +101,11 @@ TEST(HardShadow, LightBehindTheReceiverIsAmbientAlone) {
 TEST(HardShadow, ReceiverEdgeOnToTheLight) {
   for (const double slope : {0.0, 1e-9, 1e-4}) {
     Floor floor;
-    floor.stage.scene.lights[1].direction = {1, -slope, 0};
+    floor.shaded.scene.lights[1].direction = {1, -slope, 0};
     const LinearImage shadow = floor.draw_with(ShadeTerm::Shadow, kCube),
                       full = floor.draw_with(ShadeTerm::Full, kCube);
     const double most = 0.4 * slope / (kAmbient + 0.4 * slope) + 1e-6;
-    const vec3 base = floor.stage.scene.materials[Stage::kFloor].base_color;
+    const vec3 base = floor.shaded.scene.materials[ShadeScene::kFloor].base_color;
     for (std::size_t i = 0; i < full.texels.size(); ++i) {
       ASSERT_TRUE(shadow.texels[i].a >= 0 && shadow.texels[i].a <= most) << slope;
       if (full.texels[i].a < 1) continue;
@@ -116,24 +116,24 @@ TEST(HardShadow, ReceiverEdgeOnToTheLight) {
 
 // A receiver that is seen edge-on has no texel, in any term.
 TEST(HardShadow, ReceiverEdgeOnToTheEyeShowsNothing) {
-  Stage stage;
-  stage.scene.nodes[3].local.translation = {0, 0, 4};
-  stage.scene.nodes[3].local.rotation = {1, 0, 0, 0};
-  stage.scene.parts.resize(1);
+  ShadeScene shaded;
+  shaded.scene.nodes[3].local.translation = {0, 0, 4};
+  shaded.scene.nodes[3].local.rotation = {1, 0, 0, 0};
+  shaded.scene.parts.resize(1);
   for (const ShadeTerm term : kAllTerms) {
-    const RenderResult result = stage.render(stage.inputs(term), exact_options());
+    const RenderResult result = shaded.render(shaded.inputs(term), exact_options());
     EXPECT_LE(result.counters.polygons_drawn, 18) << name_of(term);  // 3 × 3 cells
     EXPECT_EQ(covered_texels(result.sprite), 0) << name_of(term);
-    expect_same(result.sprite, stage.reference(stage.inputs(term), exact_options()), name_of(term));
+    expect_same(result.sprite, shaded.reference(shaded.inputs(term), exact_options()), name_of(term));
   }
 }
 
 // A roof that fills the whole map: every texel has exactly the sun's share of the light as its shadow.
 TEST(HardShadow, CasterThatFillsTheMap) {
   Floor floor;
-  floor.stage.scene.nodes[Stage::kCube].local.translation = {0, 40, 0};
-  floor.stage.scene.nodes[Stage::kCube].local.scale = {200, 0.01, 200};
-  const layers::Light& sun = floor.stage.scene.lights[1];
+  floor.shaded.scene.nodes[ShadeScene::kCube].local.translation = {0, 40, 0};
+  floor.shaded.scene.nodes[ShadeScene::kCube].local.scale = {200, 0.01, 200};
+  const layers::Light& sun = floor.shaded.scene.lights[1];
   const double facing = 2 / glm::length(sun.direction);
   const auto y_of = [](const vec3& c) { return 0.2126 * c.x + 0.7152 * c.y + 0.0722 * c.z; };
   const double sunlight = y_of(sun.color) * facing, share = sunlight / (kAmbient + sunlight);
@@ -151,7 +151,7 @@ TEST(HardShadow, CasterThatFillsTheMap) {
 // A caster whose shadow falls elsewhere: the map is looked up, and the bytes are those without it.
 TEST(HardShadow, CasterThatMissesTheReceiver) {
   Floor floor;
-  floor.stage.scene.nodes[Stage::kCube].local.translation = {50, 0.9, 0};
+  floor.shaded.scene.nodes[ShadeScene::kCube].local.translation = {50, 0.9, 0};
   const LinearImage image = floor.draw_with(ShadeTerm::Full, kCube), plain = floor.draw(ShadeTerm::Full, {});
   EXPECT_GT(image.counters.shadow_lookups, 500);
   for (std::size_t i = 0; i < image.texels.size(); ++i) {
@@ -165,24 +165,24 @@ TEST(HardShadow, CasterThatMissesTheReceiver) {
 // The plane of the mirror goes through the eye: what it mirrors is what is seen anyway, half of it is cut
 // off, and the mirror itself is edge-on. Nothing of it may reach the picture.
 TEST(HardReflection, PlaneThroughTheEyeAddsNothing) {
-  Stage stage;
-  stage.scene.nodes[3].local.translation = {0, 0, 4};
-  stage.scene.nodes[3].local.rotation = {1, 0, 0, 0};
-  const layers::SceneFrame frame = stage.scene.at(0);
-  ShadeInputs inputs = stage.inputs();
-  const PreparedScene prepared(stage.scene);
+  ShadeScene shaded;
+  shaded.scene.nodes[3].local.translation = {0, 0, 4};
+  shaded.scene.nodes[3].local.rotation = {1, 0, 0, 0};
+  const layers::SceneFrame frame = shaded.scene.at(0);
+  ShadeInputs inputs = shaded.inputs();
+  const PreparedScene prepared(shaded.scene);
   ShadeInputs of_mirrored;
   of_mirrored.kept = before_mirror(frame, dvec3(0), {0, 1, 0});
-  const std::vector<int> mirrored_parts{Stage::kCube, Stage::kBall};
+  const std::vector<int> mirrored_parts{ShadeScene::kCube, ShadeScene::kBall};
   const Sprite picture = chunker::render(prepared, mirrored_frame(frame, dvec3(0), {0, 1, 0}), mirrored_parts,
-                                         stage.size, display_placement(stage.size), {}, of_mirrored)
+                                         shaded.size, display_placement(shaded.size), {}, of_mirrored)
                              .sprite;
   EXPECT_GT(covered_texels(picture), 20);  // the cube and the ball are before the mirror, wholly
   const Reflection reflection{&picture, {}, {}};
   inputs.reflections = {&reflection, 1};
-  const RenderResult with = stage.render(inputs, exact_options());
+  const RenderResult with = shaded.render(inputs, exact_options());
   inputs.reflections = {};
-  expect_same(with.sprite, stage.render(inputs, exact_options()).sprite, "edge-on mirror");
+  expect_same(with.sprite, shaded.render(inputs, exact_options()).sprite, "edge-on mirror");
 }
 
 // --- Highlights
@@ -312,21 +312,23 @@ TEST(HardCompression, EmptyFullAndOneTexelChunksShowTheSamePicture) {
 // A shadow in a sprite of an eighth of the resolution: equal to the reference, and where the shadow is even,
 // what the full one has there on average.
 TEST(HardScale, ShadowAtAnEighth) {
-  Stage stage;
-  stage.size = {160, 120};
-  const ShadeInputs inputs = stage.inputs(ShadeTerm::Shadow, Stage::kSun);
+  ShadeScene shaded;
+  shaded.size = {160, 120};
+  const ShadeInputs inputs = shaded.inputs(ShadeTerm::Shadow, ShadeScene::kSun);
   layers::SpritePlacement coarse = display_placement({20, 15});
   coarse.screen_from_sprite = {8, 0, 0, 0, 8, 0};
-  const PreparedScene prepared(stage.scene);
-  const std::vector<int> floor{Stage::kFloor};
+  const PreparedScene prepared(shaded.scene);
+  const std::vector<int> floor{ShadeScene::kFloor};
   const auto draw = [&](const layers::SpritePlacement& placement) {
-    return render_linear(prepared, stage.scene.at(0), floor, stage.size, placement, exact_options(), inputs);
+    return render_linear(prepared, shaded.scene.at(0), floor, shaded.size, placement, exact_options(),
+                         inputs);
   };
   expect_same(
-      chunker::render(prepared, stage.scene.at(0), floor, stage.size, coarse, exact_options(), inputs).sprite,
-      reference::render(prepared, stage.scene.at(0), floor, stage.size, coarse, exact_options(), inputs),
+      chunker::render(prepared, shaded.scene.at(0), floor, shaded.size, coarse, exact_options(), inputs)
+          .sprite,
+      reference::render(prepared, shaded.scene.at(0), floor, shaded.size, coarse, exact_options(), inputs),
       "an eighth");
-  const LinearImage small = draw(coarse), full = draw(display_placement(stage.size));
+  const LinearImage small = draw(coarse), full = draw(display_placement(shaded.size));
   int even = 0, dark = 0;
   for (int y = 0; y < 15; ++y)
     for (int x = 0; x < 20; ++x) {

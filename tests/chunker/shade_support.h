@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// A small stage that calls for every shading term: a shiny, mirroring, checkered floor, a cube and a
+/// A small scene that calls for every shading term: a shiny, mirroring, checkered floor, a cube and a
 /// translucent ball over it, an ambient light, a spot and a sun that both cast shadows.
 
 #include <memory>
@@ -16,12 +16,12 @@
 
 namespace talisman::chunker::tests {
 
-class Stage {
+class ShadeScene {
  public:
   static constexpr int kFloor = 0, kCube = 1, kBall = 2;  ///< parts, meshes, materials and nodes
   static constexpr int kSpot = 1, kSun = 2;               ///< lights
 
-  Stage() {
+  ShadeScene() {
     namespace content = talisman::tests;
     scene.meshes = {content::quad_mesh(6, 4, 3), content::cube_mesh(), content::sphere_mesh(6, 10, 0.5)};
     scene.textures = {content::checker_texture(4, 8), content::checker_texture(3, 5)};

@@ -24,15 +24,15 @@ float largest_alpha(const LinearImage& image) {
 }
 
 TEST(ShadeTerm, EqualsTheReferenceInEveryShading) {
-  Stage stage;
-  stage.scene.materials[Stage::kFloor].texture2 = 1;
-  stage.scene.materials[Stage::kFloor].texture_blend = {0.7f, 0.2f};
+  ShadeScene shaded;
+  shaded.scene.materials[ShadeScene::kFloor].texture2 = 1;
+  shaded.scene.materials[ShadeScene::kFloor].texture_blend = {0.7f, 0.2f};
   for (const ShadeTerm term : kAllTerms)
     for (const Shading shading : {Shading::Flat, Shading::Gouraud, Shading::Phong}) {
       RenderOptions options = exact_options();
       options.shading = shading;
-      const RenderResult result = stage.render(stage.inputs(term), options);
-      expect_same(result.sprite, stage.reference(stage.inputs(term), options), name_of(term));
+      const RenderResult result = shaded.render(shaded.inputs(term), options);
+      expect_same(result.sprite, shaded.reference(shaded.inputs(term), options), name_of(term));
       EXPECT_GT(result.sprite.stored_chunks(), 0) << name_of(term);
       if (shading == Shading::Phong)
         dump_picture("term" + std::to_string(static_cast<int>(term)), result.sprite);
@@ -41,50 +41,50 @@ TEST(ShadeTerm, EqualsTheReferenceInEveryShading) {
 
 // Lanes, threads: nothing of it may show in a byte.
 TEST(ShadeTerm, HasTheSameBytesForAnyLanesAndThreads) {
-  Stage stage;
-  stage.size = {90, 70};
-  stage.scene.materials[Stage::kCube].shininess = 1e4f;
+  ShadeScene shaded;
+  shaded.size = {90, 70};
+  shaded.scene.materials[ShadeScene::kCube].shininess = 1e4f;
   for (const ShadeTerm term : {ShadeTerm::Full, ShadeTerm::Shadow, ShadeTerm::Specular}) {
-    const ShadeInputs inputs = stage.inputs(term);
-    const Sprite expected = stage.render(inputs).sprite;
+    const ShadeInputs inputs = shaded.inputs(term);
+    const Sprite expected = shaded.render(inputs).sprite;
     for (std::int64_t targets = hwy::SupportedTargets(); targets != 0; targets &= targets - 1) {
       hwy::GetChosenTarget().Update(targets & -targets);
-      expect_same(stage.render(inputs).sprite, expected, hwy::TargetName(targets & -targets));
+      expect_same(shaded.render(inputs).sprite, expected, hwy::TargetName(targets & -targets));
     }
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-    expect_same(stage.render(inputs).sprite, expected, "one thread");
+    expect_same(shaded.render(inputs).sprite, expected, "one thread");
   }
 }
 
 // Maps that say nothing, of whatever form, must leave the picture and the counters alone.
 TEST(ShadeTerm, InputsWithoutContentCostNothing) {
-  Stage stage;
-  const RenderResult plain = stage.render({});
+  ShadeScene shaded;
+  const RenderResult plain = shaded.render({});
   const ShadowMap empty;
   const std::vector<const ShadowMap*> maps{nullptr, &empty, nullptr, &empty};
   ShadeInputs inputs;
   inputs.shadow_maps = maps;
-  const RenderResult same = stage.render(inputs);
+  const RenderResult same = shaded.render(inputs);
   expect_same(plain.sprite, same.sprite, "empty maps");
   EXPECT_EQ(plain.counters, same.counters);
   EXPECT_EQ(same.counters.shadow_lookups + same.counters.reflection_lookups, 0);
   // Terms that do not ask for shadows look none up, even when maps are there.
   for (const ShadeTerm term : {ShadeTerm::Base, ShadeTerm::Reflection, ShadeTerm::Texture1})
-    EXPECT_EQ(stage.render(stage.inputs(term)).counters.shadow_lookups, 0) << name_of(term);
-  EXPECT_GT(stage.render(stage.inputs(ShadeTerm::Shadow)).counters.shadow_lookups, 0);
-  EXPECT_EQ(stage.render(stage.inputs(ShadeTerm::Shadow)).counters.texture_samples, 0);
+    EXPECT_EQ(shaded.render(shaded.inputs(term)).counters.shadow_lookups, 0) << name_of(term);
+  EXPECT_GT(shaded.render(shaded.inputs(ShadeTerm::Shadow)).counters.shadow_lookups, 0);
+  EXPECT_EQ(shaded.render(shaded.inputs(ShadeTerm::Shadow)).counters.texture_samples, 0);
 }
 
 TEST(ShadeTerm, AddedTermsHaveNoAlphaAndShadowsNoColour) {
-  Stage stage;
-  stage.scene.materials[Stage::kFloor].texture2 = 1;
+  ShadeScene shaded;
+  shaded.scene.materials[ShadeScene::kFloor].texture2 = 1;
   for (const ShadeTerm term : {ShadeTerm::Specular, ShadeTerm::Reflection, ShadeTerm::Texture2}) {
-    const LinearImage image = stage.linear(stage.inputs(term));
+    const LinearImage image = shaded.linear(shaded.inputs(term));
     EXPECT_EQ(largest_alpha(image), 0) << name_of(term);
     EXPECT_GT(largest_color(image), 0.02f) << name_of(term);
   }
-  const LinearImage shadow = stage.linear(stage.inputs(ShadeTerm::Shadow));
+  const LinearImage shadow = shaded.linear(shaded.inputs(ShadeTerm::Shadow));
   EXPECT_EQ(largest_color(shadow), 0);
   EXPECT_GT(largest_alpha(shadow), 0.3f);
   EXPECT_LE(largest_alpha(shadow), 1);
@@ -92,19 +92,19 @@ TEST(ShadeTerm, AddedTermsHaveNoAlphaAndShadowsNoColour) {
 
 // A matte cube over a shiny, mirroring floor: where the cube is seen the floor adds nothing.
 TEST(ShadeTerm, HiddenSurfacesStayHidden) {
-  Stage stage;
-  stage.scene.materials[Stage::kCube].specular = {0, 0, 0};
-  stage.scene.parts.pop_back();
-  const PreparedScene prepared(stage.scene);
-  const std::vector<int> cube{Stage::kCube}, both{Stage::kFloor, Stage::kCube};
+  ShadeScene shaded;
+  shaded.scene.materials[ShadeScene::kCube].specular = {0, 0, 0};
+  shaded.scene.parts.pop_back();
+  const PreparedScene prepared(shaded.scene);
+  const std::vector<int> cube{ShadeScene::kCube}, both{ShadeScene::kFloor, ShadeScene::kCube};
   const auto draw = [&](std::span<const int> parts, ShadeTerm term) {
     ShadeInputs inputs;
     inputs.term = term;
-    return render_linear(prepared, stage.scene.at(0), parts, stage.size, display_placement(stage.size), {},
+    return render_linear(prepared, shaded.scene.at(0), parts, shaded.size, display_placement(shaded.size), {},
                          inputs);
   };
   const LinearImage cover = draw(cube, ShadeTerm::Base), specular = draw(both, ShadeTerm::Specular),
-                    floor = draw(std::vector<int>{Stage::kFloor}, ShadeTerm::Specular);
+                    floor = draw(std::vector<int>{ShadeScene::kFloor}, ShadeTerm::Specular);
   int covered = 0;
   float would_show = 0;
   for (std::size_t i = 0; i < cover.texels.size(); ++i) {
@@ -120,16 +120,16 @@ TEST(ShadeTerm, HiddenSurfacesStayHidden) {
 // Inside one triangle no texel mixes surfaces: the formula of the header must hold in every one.
 TEST(ShadeTerm, AddUpToFullInsideASurface) {
   for (const Shading shading : {Shading::Flat, Shading::Gouraud, Shading::Phong}) {
-    Stage stage;
-    stage.inputs();
-    stage.scene.parts.resize(1);
-    stage.scene.meshes[Stage::kFloor] = talisman::tests::quad_mesh(6, 1, 3);
-    stage.scene.meshes[Stage::kFloor].indices.resize(3);
+    ShadeScene shaded;
+    shaded.inputs();
+    shaded.scene.parts.resize(1);
+    shaded.scene.meshes[ShadeScene::kFloor] = talisman::tests::quad_mesh(6, 1, 3);
+    shaded.scene.meshes[ShadeScene::kFloor].indices.resize(3);
     int whole = 0;
     RenderOptions options = exact_options();
     options.shading = shading;
-    const LinearImage full = stage.linear(stage.inputs(), options),
-                      unfactored = stage.multipass(stage.inputs(), options);
+    const LinearImage full = shaded.linear(shaded.inputs(), options),
+                      unfactored = shaded.multipass(shaded.inputs(), options);
     for (std::size_t i = 0; i < full.texels.size(); ++i) {
       if (full.texels[i].a < 1) continue;
       ++whole;
@@ -142,14 +142,14 @@ TEST(ShadeTerm, AddUpToFullInsideASurface) {
 
 // What the light does not reach for facing away has no light to lose: nothing is darkened twice.
 TEST(ShadeTerm, NoShadowOnSurfacesThatFaceAway) {
-  Stage stage;
-  stage.scene.lights.resize(2);
-  stage.scene.lights[Stage::kSpot].position = {0, -3, 0};  // below the floor, which is seen from above
-  stage.scene.lights[Stage::kSpot].direction = {0, 1, 0};
-  stage.scene.lights[Stage::kSpot].outer_cone_rad = 1.5;
-  stage.scene.parts.resize(1);
-  const std::vector<int> casters{Stage::kFloor};
-  const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSpot, casters);
+  ShadeScene shaded;
+  shaded.scene.lights.resize(2);
+  shaded.scene.lights[ShadeScene::kSpot].position = {0, -3, 0};  // below the floor, which is seen from above
+  shaded.scene.lights[ShadeScene::kSpot].direction = {0, 1, 0};
+  shaded.scene.lights[ShadeScene::kSpot].outer_cone_rad = 1.5;
+  shaded.scene.parts.resize(1);
+  const std::vector<int> casters{ShadeScene::kFloor};
+  const ShadowMap map = make_shadow_map(shaded.scene.at(0), ShadeScene::kSpot, casters);
   const std::vector<const ShadowMap*> maps{nullptr, &map};
   ShadeInputs inputs;
   inputs.shadow_maps = maps;
@@ -157,10 +157,10 @@ TEST(ShadeTerm, NoShadowOnSurfacesThatFaceAway) {
     RenderOptions options;
     options.shading = shading;
     inputs.term = ShadeTerm::Shadow;
-    EXPECT_EQ(largest_alpha(stage.linear(inputs, options)), 0);
+    EXPECT_EQ(largest_alpha(shaded.linear(inputs, options)), 0);
     inputs.term = ShadeTerm::Full;
-    const float lit = largest_color(stage.linear(inputs, options));
-    EXPECT_NEAR(lit, largest_color(stage.linear({}, options)), 1e-6f);
+    const float lit = largest_color(shaded.linear(inputs, options));
+    EXPECT_NEAR(lit, largest_color(shaded.linear({}, options)), 1e-6f);
   }
 }
 
@@ -194,20 +194,20 @@ TEST(ShadeTerm, TranslucentOverAdditive) {
 
 TEST(ShadeTerm, ExtremeExponentsEqualTheReference) {
   for (const float shininess : {0.0f, 1e4f}) {
-    Stage stage;
-    for (layers::Material& material : stage.scene.materials) material.shininess = shininess;
-    expect_same(stage.render(stage.inputs(ShadeTerm::Specular), exact_options()).sprite,
-                stage.reference(stage.inputs(ShadeTerm::Specular), exact_options()),
+    ShadeScene shaded;
+    for (layers::Material& material : shaded.scene.materials) material.shininess = shininess;
+    expect_same(shaded.render(shaded.inputs(ShadeTerm::Specular), exact_options()).sprite,
+                shaded.reference(shaded.inputs(ShadeTerm::Specular), exact_options()),
                 std::to_string(shininess));
   }
 }
 
 // A light that is not a number is left out, its map is empty, and the rest of the picture stays.
 TEST(ShadeTerm, LightsThatAreNotFiniteAreLeftOut) {
-  Stage broken, dark;
-  broken.scene.lights[Stage::kSpot].color.x = std::nanf("");
-  broken.scene.lights[Stage::kSpot].position.x = std::nan("");
-  dark.scene.lights[Stage::kSpot].color = vec3(0);
+  ShadeScene broken, dark;
+  broken.scene.lights[ShadeScene::kSpot].color.x = std::nanf("");
+  broken.scene.lights[ShadeScene::kSpot].position.x = std::nan("");
+  dark.scene.lights[ShadeScene::kSpot].color = vec3(0);
   for (const ShadeTerm term : {ShadeTerm::Full, ShadeTerm::Shadow, ShadeTerm::Specular})
     expect_same(broken.render(broken.inputs(term)).sprite, dark.render(dark.inputs(term)).sprite,
                 name_of(term));
@@ -215,10 +215,12 @@ TEST(ShadeTerm, LightsThatAreNotFiniteAreLeftOut) {
 
 // The highlight of one light, and then of the other: together the highlights of both.
 TEST(ShadeTerm, HighlightsOfSingleLightsAddUp) {
-  Stage stage;
-  const LinearImage all = stage.linear(stage.inputs(ShadeTerm::Specular), exact_options()),
-                    spot = stage.linear(stage.inputs(ShadeTerm::Specular, Stage::kSpot), exact_options()),
-                    sun = stage.linear(stage.inputs(ShadeTerm::Specular, Stage::kSun), exact_options());
+  ShadeScene shaded;
+  const LinearImage all = shaded.linear(shaded.inputs(ShadeTerm::Specular), exact_options()),
+                    spot =
+                        shaded.linear(shaded.inputs(ShadeTerm::Specular, ShadeScene::kSpot), exact_options()),
+                    sun =
+                        shaded.linear(shaded.inputs(ShadeTerm::Specular, ShadeScene::kSun), exact_options());
   EXPECT_GT(largest_color(spot), 0.01f);
   EXPECT_GT(largest_color(sun), 0.01f);
   for (std::size_t i = 0; i < all.texels.size(); ++i)
@@ -227,13 +229,13 @@ TEST(ShadeTerm, HighlightsOfSingleLightsAddUp) {
 
 // (N·L) T₁ and (N·L) T₂ with their blend factors are the base [LS97 2.3].
 TEST(ShadeTerm, TexturesBlendToTheBase) {
-  Stage stage;
-  stage.scene.parts.resize(1);
-  stage.scene.materials[Stage::kFloor].texture2 = 1;
-  stage.scene.materials[Stage::kFloor].texture_blend = {0.75f, 0.5f};
-  const LinearImage base = stage.linear(stage.inputs(ShadeTerm::Base), exact_options()),
-                    one = stage.linear(stage.inputs(ShadeTerm::Texture1), exact_options()),
-                    two = stage.linear(stage.inputs(ShadeTerm::Texture2), exact_options());
+  ShadeScene shaded;
+  shaded.scene.parts.resize(1);
+  shaded.scene.materials[ShadeScene::kFloor].texture2 = 1;
+  shaded.scene.materials[ShadeScene::kFloor].texture_blend = {0.75f, 0.5f};
+  const LinearImage base = shaded.linear(shaded.inputs(ShadeTerm::Base), exact_options()),
+                    one = shaded.linear(shaded.inputs(ShadeTerm::Texture1), exact_options()),
+                    two = shaded.linear(shaded.inputs(ShadeTerm::Texture2), exact_options());
   EXPECT_GT(largest_color(two), 0.05f);
   for (std::size_t i = 0; i < base.texels.size(); ++i) {
     EXPECT_EQ(base.texels[i].a, one.texels[i].a);
@@ -276,10 +278,10 @@ TEST(Light, SpotFallsOffBetweenItsCones) {
 
 TEST(RenderOptions, FewerSamplesEqualTheReference) {
   for (const int samples : {1, 4}) {
-    Stage stage;
+    ShadeScene shaded;
     RenderOptions options = exact_options();
     options.samples = samples;
-    expect_same(stage.render(stage.inputs(), options).sprite, stage.reference(stage.inputs(), options),
+    expect_same(shaded.render(shaded.inputs(), options).sprite, shaded.reference(shaded.inputs(), options),
                 std::to_string(samples) + " samples");
   }
 }
@@ -307,14 +309,14 @@ TEST(RenderOptions, SamplesAreTheStepsOfAnEdge) {
 }
 
 TEST(RenderOptions, FiltersEqualTheReference) {
-  Stage stage;
+  ShadeScene shaded;
   RenderOptions options = exact_options();
   for (const TextureFilter filter :
        {TextureFilter::Nearest, TextureFilter::Bilinear, TextureFilter::Trilinear})
     for (const int anisotropy : {1, 8}) {
       options.filter = filter;
       options.max_anisotropy = anisotropy;
-      expect_same(stage.render({}, options).sprite, stage.reference({}, options),
+      expect_same(shaded.render({}, options).sprite, shaded.reference({}, options),
                   std::to_string(static_cast<int>(filter)) + " " + std::to_string(anisotropy));
     }
 }
@@ -322,21 +324,21 @@ TEST(RenderOptions, FiltersEqualTheReference) {
 // A checkered floor seen at a grazing angle: the truth is the same picture at four times the resolution,
 // averaged. More samples along the line of anisotropy must come closer to it.
 TEST(RenderOptions, AnisotropicSamplesComeCloserToTheTruth) {
-  Stage stage;
-  stage.scene.parts.resize(1);
-  stage.scene.nodes[3].local.translation = {0, 0.5, 3.5};
-  stage.scene.nodes[3].local.rotation = glm::angleAxis(-0.15, dvec3(1, 0, 0));
+  ShadeScene shaded;
+  shaded.scene.parts.resize(1);
+  shaded.scene.nodes[3].local.translation = {0, 0.5, 3.5};
+  shaded.scene.nodes[3].local.rotation = glm::angleAxis(-0.15, dvec3(1, 0, 0));
   const int k = 4;
-  Stage fine = stage;
-  fine.size = stage.size * k;
+  ShadeScene fine = shaded;
+  fine.size = shaded.size * k;
   const LinearImage truth = fine.linear({});
   const auto error = [&](int anisotropy) {
     RenderOptions options;
     options.max_anisotropy = anisotropy;
-    const LinearImage image = stage.linear({}, options);
+    const LinearImage image = shaded.linear({}, options);
     double sum = 0;
-    for (int y = 0; y < stage.size.y; ++y)
-      for (int x = 0; x < stage.size.x; ++x) {
+    for (int y = 0; y < shaded.size.y; ++y)
+      for (int x = 0; x < shaded.size.x; ++x) {
         double mean = 0;
         for (int j = 0; j < k; ++j)
           for (int i = 0; i < k; ++i) mean += truth.at(x * k + i, y * k + j).g;

@@ -17,17 +17,17 @@ layers::ShadowMapOptions sharp(int resolution_px) {
   return options;
 }
 
-/// The sun's map of the stage with its cube (and ball) at x.
+/// The sun's map of the scene with its cube (and ball) at x.
 struct Moved {
   Moved(double cube_x, double ball_x, const layers::ShadowMapOptions& options) {
-    stage.scene.nodes[Stage::kCube].local.translation.x = cube_x;
-    stage.scene.nodes[Stage::kBall].local.translation.x = ball_x;
-    const std::vector<int> casters{Stage::kCube, Stage::kBall};
-    map = make_shadow_map(stage.scene.at(0), Stage::kSun, casters, options);
+    shaded.scene.nodes[ShadeScene::kCube].local.translation.x = cube_x;
+    shaded.scene.nodes[ShadeScene::kBall].local.translation.x = ball_x;
+    const std::vector<int> casters{ShadeScene::kCube, ShadeScene::kBall};
+    map = make_shadow_map(shaded.scene.at(0), ShadeScene::kSun, casters, options);
   }
   const Rows34& grid() const { return map.faces()[0].map_from_world; }
   double texel_m() const { return 1 / glm::length(dvec3(grid().row[0])); }
-  Stage stage;
+  ShadeScene shaded;
   ShadowMap map;
 };
 
@@ -61,17 +61,17 @@ double shadow_edge(const ShadowMap& map, double dark_x, double lit_x) {
 // A caster that creeps by a tenth of a texel per frame: the edge of its shadow goes on by whole texels, never
 // back, and on average as fast as the caster.
 TEST(ShadowGrid, EdgeOfWhatMovesGoesByWholeTexels) {
-  Stage stage;
-  stage.scene.lights[Stage::kSun].direction = {0, -1, 0};
-  const std::vector<int> cube{Stage::kCube};
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSun].direction = {0, -1, 0};
+  const std::vector<int> cube{ShadeScene::kCube};
   const double start = -0.4;
   double texel = 0, first = 0, last = 0;
   int steps = 0;
   constexpr int kFrames = 200;
   for (int frame = 0; frame <= kFrames; ++frame) {
     const double x = start + frame * 0.1 * texel;
-    stage.scene.nodes[Stage::kCube].local.translation.x = x;
-    const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSun, cube, sharp(100));
+    shaded.scene.nodes[ShadeScene::kCube].local.translation.x = x;
+    const ShadowMap map = make_shadow_map(shaded.scene.at(0), ShadeScene::kSun, cube, sharp(100));
     const double edge = shadow_edge(map, x, x + 0.8);
     if (frame == 0) {
       texel = 1 / glm::length(dvec3(map.faces()[0].map_from_world.row[0]));

@@ -38,12 +38,12 @@ bool sees_light(const layers::SceneFrame& frame, int light, std::span<const int>
   return true;
 }
 
-const std::vector<int> kCasters{Stage::kCube, Stage::kBall};
+const std::vector<int> kCasters{ShadeScene::kCube, ShadeScene::kBall};
 
 /// Share of random places around the casters where a sharp map and a ray disagree. Places inside a caster or
 /// close to one belong to the bias and are left out.
-double disagreement(const Stage& stage, int light, unsigned seed) {
-  const layers::SceneFrame frame = stage.scene.at(0);
+double disagreement(const ShadeScene& shaded, int light, unsigned seed) {
+  const layers::SceneFrame frame = shaded.scene.at(0);
   layers::ShadowMapOptions options;
   options.resolution_px = 256;
   options.pcf_radius = 0;
@@ -69,59 +69,59 @@ double disagreement(const Stage& stage, int light, unsigned seed) {
   return static_cast<double>(wrong) / tried;
 }
 
-TEST(ShadowMap, SunAgreesWithRays) { EXPECT_LT(disagreement(Stage(), Stage::kSun, 1), 0.02); }
+TEST(ShadowMap, SunAgreesWithRays) { EXPECT_LT(disagreement(ShadeScene(), ShadeScene::kSun, 1), 0.02); }
 
-TEST(ShadowMap, SpotAgreesWithRays) { EXPECT_LT(disagreement(Stage(), Stage::kSpot, 2), 0.02); }
+TEST(ShadowMap, SpotAgreesWithRays) { EXPECT_LT(disagreement(ShadeScene(), ShadeScene::kSpot, 2), 0.02); }
 
 // Beside the casters: one map towards them is enough.
 TEST(ShadowMap, PointBesideTheCastersTakesOneMap) {
-  Stage stage;
-  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
-  EXPECT_LT(disagreement(stage, Stage::kSpot, 3), 0.02);
-  EXPECT_EQ(make_shadow_map(stage.scene.at(0), Stage::kSpot, kCasters).faces().size(), 1u);
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSpot].kind = layers::Light::Kind::Point;
+  EXPECT_LT(disagreement(shaded, ShadeScene::kSpot, 3), 0.02);
+  EXPECT_EQ(make_shadow_map(shaded.scene.at(0), ShadeScene::kSpot, kCasters).faces().size(), 1u);
 }
 
 // Among the casters: six maps, and no light leaks through their seams.
 TEST(ShadowMap, PointAmongTheCastersTakesSixMaps) {
-  Stage stage;
-  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
-  stage.scene.lights[Stage::kSpot].position = {0.35, 0.8, 0.4};
-  EXPECT_LT(disagreement(stage, Stage::kSpot, 4), 0.02);
-  EXPECT_EQ(make_shadow_map(stage.scene.at(0), Stage::kSpot, kCasters).faces().size(), 6u);
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSpot].kind = layers::Light::Kind::Point;
+  shaded.scene.lights[ShadeScene::kSpot].position = {0.35, 0.8, 0.4};
+  EXPECT_LT(disagreement(shaded, ShadeScene::kSpot, 4), 0.02);
+  EXPECT_EQ(make_shadow_map(shaded.scene.at(0), ShadeScene::kSpot, kCasters).faces().size(), 6u);
 }
 
 // Inside a closed cube the light reaches its walls and nothing beyond them, in every direction, filter or
 // not.
 TEST(ShadowMap, LightInsideAnObjectStaysInside) {
-  Stage stage;
-  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
-  stage.scene.lights[Stage::kSpot].position = {-0.4 + 0.05, 0.9 - 0.1, 0.02};
-  const std::vector<int> cube{Stage::kCube};
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSpot].kind = layers::Light::Kind::Point;
+  shaded.scene.lights[ShadeScene::kSpot].position = {-0.4 + 0.05, 0.9 - 0.1, 0.02};
+  const std::vector<int> cube{ShadeScene::kCube};
   for (const int radius : {0, 1, 3}) {
     layers::ShadowMapOptions options;
     options.resolution_px = 64;
     options.pcf_radius = radius;
-    const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSpot, cube, options);
+    const ShadowMap map = make_shadow_map(shaded.scene.at(0), ShadeScene::kSpot, cube, options);
     std::mt19937 random(5);
     std::normal_distribution<double> normal(0, 1);
     for (int n = 0; n < 2000; ++n) {
       const dvec3 d = glm::normalize(dvec3(normal(random), normal(random), normal(random)));
-      EXPECT_EQ(map.visibility(stage.scene.lights[Stage::kSpot].position + d * 3.0), 0)
+      EXPECT_EQ(map.visibility(shaded.scene.lights[ShadeScene::kSpot].position + d * 3.0), 0)
           << d.x << " " << d.y << " " << d.z << " radius " << radius;
-      EXPECT_EQ(map.visibility(stage.scene.lights[Stage::kSpot].position + d * 0.2), 1);
+      EXPECT_EQ(map.visibility(shaded.scene.lights[ShadeScene::kSpot].position + d * 0.2), 1);
     }
   }
 }
 
 // Straight down on a cube of one metre: the shadow's edges are those of the cube, within a texel.
 TEST(ShadowMap, EdgesLieWhereTheyMust) {
-  Stage stage;
-  stage.scene.lights[Stage::kSun].direction = {0, -1, 0};
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSun].direction = {0, -1, 0};
   layers::ShadowMapOptions options;
   options.pcf_radius = 0;
   options.resolution_px = 100;
-  const std::vector<int> cube{Stage::kCube};
-  const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSun, cube, options);
+  const std::vector<int> cube{ShadeScene::kCube};
+  const ShadowMap map = make_shadow_map(shaded.scene.at(0), ShadeScene::kSun, cube, options);
   const double texel = 1.01 / glm::length(dvec3(map.faces()[0].map_from_world.row[0]));
   EXPECT_LT(texel, 1.0 / 98 * 1.16);  // no more than it takes, and a step of the grid
   for (double z = -0.45; z < 0.46; z += 0.05)
@@ -134,23 +134,24 @@ TEST(ShadowMap, EdgesLieWhereTheyMust) {
 
 // A surface must not shadow itself where the light meets it: default bias, flat and round, filtered.
 TEST(ShadowMap, LitSidesDoNotShadowThemselves) {
-  Stage stage;
-  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
-  stage.scene.materials[Stage::kBall].opacity = 1;
-  stage.scene.meshes[Stage::kBall] = talisman::tests::sphere_mesh(24, 48, 0.5);
-  const layers::SceneFrame frame = stage.scene.at(0);
-  for (const int light : {Stage::kSpot, Stage::kSun})
-    for (const int part : {Stage::kCube, Stage::kBall}) {
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSpot].kind = layers::Light::Kind::Point;
+  shaded.scene.materials[ShadeScene::kBall].opacity = 1;
+  shaded.scene.meshes[ShadeScene::kBall] = talisman::tests::sphere_mesh(24, 48, 0.5);
+  const layers::SceneFrame frame = shaded.scene.at(0);
+  for (const int light : {ShadeScene::kSpot, ShadeScene::kSun})
+    for (const int part : {ShadeScene::kCube, ShadeScene::kBall}) {
       const std::vector<int> self{part};
       layers::ShadowMapOptions options;
       options.resolution_px = 256;
       const ShadowMap map = make_shadow_map(frame, light, self, options);
-      const layers::Mesh& mesh = stage.scene.meshes[part];
-      const std::vector<dvec3> world = layers::world_positions(frame, stage.scene.parts[part]);
+      const layers::Mesh& mesh = shaded.scene.meshes[part];
+      const std::vector<dvec3> world = layers::world_positions(frame, shaded.scene.parts[part]);
       int facing = 0;
       for (std::size_t i = 0; i < world.size(); ++i) {
-        const dvec3 to_light = light == Stage::kSun ? -frame.lights[light].direction
-                                                    : glm::normalize(frame.lights[light].position - world[i]);
+        const dvec3 to_light = light == ShadeScene::kSun
+                                   ? -frame.lights[light].direction
+                                   : glm::normalize(frame.lights[light].position - world[i]);
         if (glm::dot(dvec3(mesh.normals[i]), to_light) < 0.2) continue;
         ++facing;
         EXPECT_EQ(map.visibility(world[i]), 1) << "part " << part << " vertex " << i << " light " << light;
@@ -161,13 +162,13 @@ TEST(ShadowMap, LitSidesDoNotShadowThemselves) {
 
 // A wall that fills the whole map: everything behind is dark, everything before it lit.
 TEST(ShadowMap, CasterThatFillsTheMap) {
-  Stage stage;
-  stage.scene.nodes[Stage::kCube].local.scale = {100, 0.01, 100};
-  const std::vector<int> wall{Stage::kCube};
-  for (const int light : {Stage::kSpot, Stage::kSun}) {
+  ShadeScene shaded;
+  shaded.scene.nodes[ShadeScene::kCube].local.scale = {100, 0.01, 100};
+  const std::vector<int> wall{ShadeScene::kCube};
+  for (const int light : {ShadeScene::kSpot, ShadeScene::kSun}) {
     layers::ShadowMapOptions options;  // a map of 100 m: with fewer texels the bias is larger than the gap
     options.resolution_px = 1024;
-    const ShadowMap map = make_shadow_map(stage.scene.at(0), light, wall, options);
+    const ShadowMap map = make_shadow_map(shaded.scene.at(0), light, wall, options);
     for (double x = -0.5; x < 0.6; x += 0.1) {
       EXPECT_EQ(map.visibility({x, 0.2, x}), 0) << light;
       EXPECT_EQ(map.visibility({x, 1.5, x}), 1) << light;
@@ -177,28 +178,28 @@ TEST(ShadowMap, CasterThatFillsTheMap) {
 
 // A caster outside the spot's cone: the map is there, and says nothing.
 TEST(ShadowMap, CasterThatMissesTheMap) {
-  Stage stage;
-  stage.scene.lights[Stage::kSpot].direction = {0, 1, 0};
-  const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSpot, kCasters);
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSpot].direction = {0, 1, 0};
+  const ShadowMap map = make_shadow_map(shaded.scene.at(0), ShadeScene::kSpot, kCasters);
   EXPECT_EQ(map.polygons_drawn(), 0);
   for (double x = -2; x < 2; x += 0.25) EXPECT_EQ(map.visibility({x, 5, x}), 1);
   EXPECT_EQ(map.visibility({0, 0, 0}), 1);  // behind the light
 }
 
 TEST(ShadowMap, NothingToDrawIsLitEverywhere) {
-  Stage stage;
-  const layers::SceneFrame frame = stage.scene.at(0);
+  ShadeScene shaded;
+  const layers::SceneFrame frame = shaded.scene.at(0);
   layers::ShadowMapOptions none;
   none.resolution_px = 0;
-  EXPECT_TRUE(make_shadow_map(frame, Stage::kSun, {}).empty());
-  EXPECT_TRUE(make_shadow_map(frame, Stage::kSpot, {}).empty());
-  EXPECT_TRUE(make_shadow_map(frame, Stage::kSun, kCasters, none).empty());
+  EXPECT_TRUE(make_shadow_map(frame, ShadeScene::kSun, {}).empty());
+  EXPECT_TRUE(make_shadow_map(frame, ShadeScene::kSpot, {}).empty());
+  EXPECT_TRUE(make_shadow_map(frame, ShadeScene::kSun, kCasters, none).empty());
   EXPECT_TRUE(make_shadow_map(frame, 0, kCasters).empty());  // ambient
   layers::SceneFrame broken = frame;
-  broken.lights[Stage::kSun].direction.x = std::nan("");
-  broken.lights[Stage::kSpot].position.y = HUGE_VAL;
-  EXPECT_TRUE(make_shadow_map(broken, Stage::kSun, kCasters).empty());
-  EXPECT_TRUE(make_shadow_map(broken, Stage::kSpot, kCasters).empty());
+  broken.lights[ShadeScene::kSun].direction.x = std::nan("");
+  broken.lights[ShadeScene::kSpot].position.y = HUGE_VAL;
+  EXPECT_TRUE(make_shadow_map(broken, ShadeScene::kSun, kCasters).empty());
+  EXPECT_TRUE(make_shadow_map(broken, ShadeScene::kSpot, kCasters).empty());
   EXPECT_EQ(ShadowMap().visibility({1, 2, 3}), 1);
   EXPECT_EQ(ShadowMap().bytes(), 0);
 }
@@ -206,25 +207,25 @@ TEST(ShadowMap, NothingToDrawIsLitEverywhere) {
 // One and two texels, a light at a vertex, casters that are not numbers or all in one place, places that are
 // not numbers: always a share between 0 and 1.
 TEST(ShadowMap, HardInputsStayInRange) {
-  Stage stage;
-  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
-  stage.scene.lights[Stage::kSpot].position =
-      layers::world_positions(stage.scene.at(0), stage.scene.parts[Stage::kCube])[0];
-  Stage broken = stage;
-  broken.scene.meshes[Stage::kCube].positions[3].x = std::nanf("");
-  Stage collapsed = stage;
-  for (vec3& p : collapsed.scene.meshes[Stage::kCube].positions) p = {1, 1, 1};
-  const std::vector<int> cube{Stage::kCube};
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSpot].kind = layers::Light::Kind::Point;
+  shaded.scene.lights[ShadeScene::kSpot].position =
+      layers::world_positions(shaded.scene.at(0), shaded.scene.parts[ShadeScene::kCube])[0];
+  ShadeScene broken = shaded;
+  broken.scene.meshes[ShadeScene::kCube].positions[3].x = std::nanf("");
+  ShadeScene collapsed = shaded;
+  for (vec3& p : collapsed.scene.meshes[ShadeScene::kCube].positions) p = {1, 1, 1};
+  const std::vector<int> cube{ShadeScene::kCube};
   const double inf = HUGE_VAL, nan = std::nan("");
-  for (Stage* s : {&stage, &broken, &collapsed})
-    for (const int light : {Stage::kSpot, Stage::kSun})
+  for (ShadeScene* s : {&shaded, &broken, &collapsed})
+    for (const int light : {ShadeScene::kSpot, ShadeScene::kSun})
       for (const int resolution : {1, 2, 33}) {
         layers::ShadowMapOptions options;
         options.resolution_px = resolution;
         options.pcf_radius = 8;
         const ShadowMap map = make_shadow_map(s->scene.at(0), light, cube, options);
         for (const dvec3& p : {dvec3(0), dvec3(1e30), dvec3(-1e-30), dvec3(nan, 0, 0), dvec3(inf, -inf, 1),
-                               s->scene.lights[Stage::kSpot].position}) {
+                               s->scene.lights[ShadeScene::kSpot].position}) {
           const float v = map.visibility(p);
           EXPECT_TRUE(v >= 0 && v <= 1) << v;
         }
@@ -234,17 +235,17 @@ TEST(ShadowMap, HardInputsStayInRange) {
 
 // Half transparent is the border: below it a part casts nothing.
 TEST(ShadowMap, FaintCastersCastNothing) {
-  Stage stage;
-  const std::vector<int> ball{Stage::kBall};
-  stage.scene.materials[Stage::kBall].opacity = 0.5f;
-  EXPECT_FALSE(make_shadow_map(stage.scene.at(0), Stage::kSun, ball).empty());
-  stage.scene.materials[Stage::kBall].opacity = 0.49f;
-  EXPECT_TRUE(make_shadow_map(stage.scene.at(0), Stage::kSun, ball).empty());
+  ShadeScene shaded;
+  const std::vector<int> ball{ShadeScene::kBall};
+  shaded.scene.materials[ShadeScene::kBall].opacity = 0.5f;
+  EXPECT_FALSE(make_shadow_map(shaded.scene.at(0), ShadeScene::kSun, ball).empty());
+  shaded.scene.materials[ShadeScene::kBall].opacity = 0.49f;
+  EXPECT_TRUE(make_shadow_map(shaded.scene.at(0), ShadeScene::kSun, ball).empty());
 }
 
 TEST(ShadowMap, ThreadsDoNotChangeItsBits) {
-  Stage stage;
-  const auto draw = [&] { return make_shadow_map(stage.scene.at(0), Stage::kSpot, kCasters); };
+  ShadeScene shaded;
+  const auto draw = [&] { return make_shadow_map(shaded.scene.at(0), ShadeScene::kSpot, kCasters); };
   const ShadowMap expected = draw();
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const ShadowMap single = draw();
@@ -256,15 +257,15 @@ TEST(ShadowMap, ThreadsDoNotChangeItsBits) {
 
 // A wider filter gives more steps between dark and lit, and the same darkness inside.
 TEST(ShadowMap, FilterSoftensTheEdge) {
-  Stage stage;
-  stage.scene.lights[Stage::kSun].direction = {0, -1, 0};
-  const std::vector<int> cube{Stage::kCube};
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSun].direction = {0, -1, 0};
+  const std::vector<int> cube{ShadeScene::kCube};
   std::size_t steps_before = 0;
   for (const int radius : {0, 1, 3}) {
     layers::ShadowMapOptions options;
     options.resolution_px = 64;
     options.pcf_radius = radius;
-    const ShadowMap map = make_shadow_map(stage.scene.at(0), Stage::kSun, cube, options);
+    const ShadowMap map = make_shadow_map(shaded.scene.at(0), ShadeScene::kSun, cube, options);
     std::vector<float> values;
     for (double x = 0; x < 0.3; x += 0.001) values.push_back(map.visibility({x, 0, 0}));
     EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));

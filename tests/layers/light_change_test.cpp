@@ -16,9 +16,9 @@ namespace {
 using ::testing::HasSubstr;
 
 /// A cube under an ambient light and a sun; nothing moves yet.
-struct Stage {
+struct LitCube {
   Scene scene = tests::cube_scene();
-  Stage& spin(int node) {
+  LitCube& spin(int node) {
     scene.tracks.push_back({node, SpinTrack{{0, 1, 0}, 1}});
     return *this;
   }
@@ -41,53 +41,53 @@ struct Stage {
 };
 
 TEST(LightChange, NothingChangesAtRest) {
-  const LightChange change = Stage().change();
+  const LightChange change = LitCube().change();
   EXPECT_FALSE(change.possible());
   EXPECT_THAT(std::string(change.why_not), HasSubstr("no light moves"));
   EXPECT_EQ(change.why, "");
 }
 
 TEST(LightChange, LayerThatTurnsUnderAFixedSunChanges) {
-  Stage stage;
-  const LightChange change = stage.spin(stage.cube()).change();
+  LitCube lit;
+  const LightChange change = lit.spin(lit.cube()).change();
   EXPECT_TRUE(change.possible());
   EXPECT_THAT(change.why, HasSubstr("part 'cube' and light"));
 }
 
 TEST(LightChange, LightThatMovesChangesALayerAtRest) {
-  Stage stage;
-  stage.sun().node = stage.add_node();
-  EXPECT_FALSE(stage.change().possible());
-  EXPECT_TRUE(stage.spin(stage.sun().node).change().possible());
+  LitCube lit;
+  lit.sun().node = lit.add_node();
+  EXPECT_FALSE(lit.change().possible());
+  EXPECT_TRUE(lit.spin(lit.sun().node).change().possible());
 }
 
 // A lamp mounted on what it lights moves with it.
 TEST(LightChange, LightCarriedByTheLayerDoesNotChange) {
-  Stage stage;
-  stage.sun().node = stage.add_node(stage.cube());
-  EXPECT_FALSE(stage.spin(stage.cube()).change().possible());
+  LitCube lit;
+  lit.sun().node = lit.add_node(lit.cube());
+  EXPECT_FALSE(lit.spin(lit.cube()).change().possible());
 }
 
 TEST(LightChange, UnlitLayersAndAmbientLightNeverChange) {
-  Stage unlit;
+  LitCube unlit;
   unlit.spin(unlit.cube()).material().unlit = true;
   EXPECT_EQ(unlit.change().why_not, "no part of the layer is lit");
-  Stage dark;
+  LitCube dark;
   dark.spin(dark.cube()).scene.lights.clear();
   EXPECT_EQ(dark.change().why_not, "the scene has no light");
-  Stage flat;
+  LitCube flat;
   flat.spin(flat.cube()).sun().kind = Light::Kind::Ambient;
   EXPECT_EQ(flat.change().why_not, "the only light is ambient");
 }
 
 TEST(LightChange, HighlightsChangeWithTheEye) {
-  Stage stage;
-  stage.scene.cameras[0].node = stage.add_node();
-  stage.spin(stage.scene.cameras[0].node);
-  EXPECT_FALSE(stage.change().possible());
-  stage.material().specular = {0.5f, 0.5f, 0.5f};
-  EXPECT_TRUE(stage.change().possible());
-  EXPECT_THAT(stage.change().why, HasSubstr("eye"));
+  LitCube lit;
+  lit.scene.cameras[0].node = lit.add_node();
+  lit.spin(lit.scene.cameras[0].node);
+  EXPECT_FALSE(lit.change().possible());
+  lit.material().specular = {0.5f, 0.5f, 0.5f};
+  EXPECT_TRUE(lit.change().possible());
+  EXPECT_THAT(lit.change().why, HasSubstr("eye"));
 }
 
 TEST(LightChange, SkinnedLayersDeformUnderTheLight) {

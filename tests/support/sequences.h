@@ -4,7 +4,7 @@
 /// Small workloads as sequences, for what runs on whole sequences.
 
 #include "sequences/content/sequence.h"
-#include "sequences/experiments/without_effect.h"
+#include "sequences/experiments/effect_removal.h"
 
 namespace talisman::tests {
 

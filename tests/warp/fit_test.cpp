@@ -14,13 +14,7 @@
 namespace talisman::warp {
 namespace {
 
-using tests::exact_affine;
-using tests::gentle_affine;
-using tests::moving_box;
-using tests::near_collinear;
-using tests::Pairs;
-using tests::Random;
-using tests::with_noise;
+using namespace tests;
 
 constexpr std::array kLeastSquares{Curve::trn, Curve::iso, Curve::so, Curve::aff, Curve::per2};
 /// The curves that are quick enough for thousands of fits; the maximum norms have their own tests.

@@ -13,13 +13,7 @@
 namespace talisman::warp {
 namespace {
 
-using tests::exact_perspective;
-using tests::gentle_perspective;
-using tests::moving_box;
-using tests::Pairs;
-using tests::Random;
-using tests::through;
-using tests::with_noise;
+using namespace tests;
 
 FitResult fit(const Pairs& pairs, Curve curve) { return warp::fit(pairs.then_px, pairs.now_px, curve); }
 

@@ -12,13 +12,7 @@
 namespace talisman::warp {
 namespace {
 
-using tests::exact_affine;
-using tests::gentle_affine;
-using tests::moving_box;
-using tests::near_collinear;
-using tests::Pairs;
-using tests::Random;
-using tests::with_noise;
+using namespace tests;
 
 constexpr std::array kLinear{Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine};
 

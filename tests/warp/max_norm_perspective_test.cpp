@@ -14,13 +14,7 @@
 namespace talisman::warp {
 namespace {
 
-using tests::exact_perspective;
-using tests::gentle_perspective;
-using tests::in_similar_display;
-using tests::moving_box;
-using tests::Pairs;
-using tests::Random;
-using tests::with_noise;
+using namespace tests;
 
 FitResult fit_post_divide(const Pairs& pairs, const FitOptions& options = {}) {
   return fit_max_norm(pairs.then_px, pairs.now_px, Family::Perspective, options);

@@ -17,13 +17,7 @@
 namespace talisman::warp {
 namespace {
 
-using tests::exact_affine;
-using tests::gentle_affine;
-using tests::in_similar_display;
-using tests::moving_box;
-using tests::Pairs;
-using tests::Random;
-using tests::with_noise;
+using namespace tests;
 
 constexpr std::array kLinear{Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine};
 constexpr std::array kAll{Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine,

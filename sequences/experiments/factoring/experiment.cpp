@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "layers/check.h"
+#include "sequences/experiments/factoring/variants.h"
+#include "sequences/experiments/regulator/setting_run.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/shade_passes.h"
 #include "sequences/pipeline/step.h"
@@ -152,13 +154,10 @@ class Experiment {
   }
 
   FactoringResult run(ProgressKind kind) {
-    result_.sampled = sampled_frames(frames_);
-    const auto is_sampled = [this](int frame) {
-      return std::binary_search(result_.sampled.begin(), result_.sampled.end(), frame);
-    };
-    Progress progress(kind, "compared", static_cast<int>(result_.sampled.size()));
+    const std::vector<int>& sampled = result_.sampled = sampled_frames(frames_);
+    Progress progress(kind, "compared", static_cast<int>(sampled.size()));
     for (int frame = 0; frame <= frames_.last; ++frame) {
-      const bool judged = is_sampled(frame), drawn = judged || is_sampled(frame + 1);
+      const bool judged = is_sampled(sampled, frame), drawn = judged || is_sampled(sampled, frame + 1);
       for (SettingRun* run : {&factored_, &unfactored_}) {
         run->advance(frame, drawn ? &prepared_ : nullptr);
         if (frame >= frames_.first) run->count();
@@ -272,70 +271,6 @@ class Experiment {
 };
 
 }  // namespace
-
-void ErrorSum::add(double error) {
-  squares += error * error;
-  largest = std::max(largest, std::fabs(error));
-  ++count;
-}
-
-ErrorSum& ErrorSum::operator+=(const ErrorSum& o) {
-  squares += o.squares;
-  largest = std::max(largest, o.largest);
-  count += o.count;
-  return *this;
-}
-
-double ErrorSum::rms() const { return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0; }
-
-void PredictionCheck::add(const FramePrediction& prediction, const chunker::Frame& shown) {
-  TALISMAN_CHECK_EQ(prediction.pixels.size(), shown.pixels.size());
-  for (std::size_t i = 0; i < prediction.pixels.size(); ++i) {
-    const PixelPrediction& pixel = prediction.pixels[i];
-    const dvec3 is = linear_of(shown.pixels[i]) - pixel.truth, should = pixel.error();
-    for (int c = 0; c < 3; ++c) {
-      const double off = is[c] - should[c];
-      predicted.add(should[c]);
-      by_formula.add(pixel.over[c]);
-      measured.add(is[c]);
-      unexplained.add(off);
-      if (std::fabs(should[c]) < kNothing) elsewhere.add(is[c]);
-      largest_bound = std::max(largest_bound, pixel.bound[c]);
-      largest_share_of_bound = std::max(largest_share_of_bound, std::fabs(off) / pixel.bound[c]);
-      beyond_bound += std::fabs(off) > pixel.bound[c];
-    }
-  }
-}
-
-PredictionCheck& PredictionCheck::operator+=(const PredictionCheck& o) {
-  predicted += o.predicted;
-  by_formula += o.by_formula;
-  measured += o.measured;
-  unexplained += o.unexplained;
-  elsewhere += o.elsewhere;
-  largest_bound = std::max(largest_bound, o.largest_bound);
-  largest_share_of_bound = std::max(largest_share_of_bound, o.largest_share_of_bound);
-  beyond_bound += o.beyond_bound;
-  return *this;
-}
-
-const char* name(Picture picture) {
-  switch (picture) {
-    case Picture::OverAlone:
-      return "over alone";
-    case Picture::ShadeResolution:
-      return "+ shade resolution";
-    case Picture::Placement:
-      return "+ placement";
-    case Picture::Reuse:
-      return "+ reuse";
-    case Picture::OnePass:
-      return "unfactored, one pass";
-    case Picture::UnfactoredReuse:
-      return "unfactored, reuse";
-  }
-  return "";
-}
 
 std::vector<ShadedLayer> shaded_layers(const Pipeline& flush, const Pipeline& whole,
                                        const PipelineState& state, const FrameReport& report,

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <map>
 
+#include "sequences/experiments/statistics.h"
 #include "sequences/pictures/page.h"
 #include "sequences/pictures/srgb.h"
 
@@ -165,7 +166,7 @@ Plot losses_plot(const FactoringReport& report) {
   for (const PictureLoss& loss : report.result.losses) {
     PlotSeries series{name(loss.picture), {}, SeriesStyle::LinePoints, {}};
     for (const FrameDiff& frame : loss.frames)
-      series.points.push_back({std::stod(frame.name), rms_code_values(frame.quality)});
+      series.points.push_back({std::stod(frame.name), rms_code_values(frame.quality.psnr_db)});
     plot.series.push_back(series);
   }
   return plot;

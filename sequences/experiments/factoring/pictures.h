@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Maps, sheet and plots of factoring_report.h.
+/// Maps, sheet and plots of report.h.
 ///
 /// A map shows the luminance of a signed error in linear light: white is none, red too bright, blue too dark,
 /// with full colour at a round number of per cent of white that is at least the largest predicted error; a
 /// bar in the map says so. The difference map shows a tenth of that range.
 
-#include "sequences/experiments/factoring/report.h"
+#include "sequences/experiments/factoring/measured.h"
 #include "sequences/pictures/image_drawing.h"
 #include "sequences/pictures/picture_sheet.h"
 #include "sequences/pictures/plot.h"

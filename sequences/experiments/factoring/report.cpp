@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/experiments/factoring/report.h"
 
-#include <cmath>
-#include <cstdio>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/experiments/columns.h"
 #include "sequences/experiments/factoring/pictures.h"
+#include "sequences/experiments/statistics.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 
@@ -16,22 +16,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string exact(double value) {
-  if (!std::isfinite(value)) return "";
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, "%.9g", value);
-  return buffer;
-}
-
-/// A number of a row, named once for CSV and JSON.
-template <typename Row>
-struct Column {
-  const char* name;
-  double (*value)(const Row&);
-};
-
 constexpr Column<PictureLoss> kLossColumns[] = {
-    {"rms_code_values", [](const PictureLoss& l) { return rms_code_values(summarize(l.frames).mean); }},
+    {"rms_code_values",
+     [](const PictureLoss& l) { return rms_code_values(summarize(l.frames).mean.psnr_db); }},
     {"max_code_values",
      [](const PictureLoss& l) { return double(summarize(l.frames).worst.max_difference); }},
     {"psnr_db", [](const PictureLoss& l) { return summarize(l.frames).mean.psnr_db; }},
@@ -77,27 +64,14 @@ constexpr Column<SettingResult> kCostColumns[] = {
 };
 
 template <typename Row, std::size_t N>
-std::string csv_header(const char* first, const Column<Row> (&columns)[N]) {
-  std::string line = first;
-  for (const Column<Row>& column : columns) line += std::string(",") + column.name;
-  return line + "\n";
-}
-
-template <typename Row, std::size_t N>
-std::string csv_line(std::string name, const Row& row, const Column<Row> (&columns)[N]) {
-  for (std::size_t at = 0; (at = name.find('"', at)) != std::string::npos; at += 2) name.insert(at, "\"");
-  std::string line = "\"" + name + "\"";
-  for (const Column<Row>& column : columns) line += "," + exact(column.value(row));
-  return line + "\n";
+std::string csv_line(const std::string& name, const Row& row, const Column<Row> (&columns)[N]) {
+  return quoted(name) + csv_cells(columns, row) + "\n";
 }
 
 template <typename Row, std::size_t N>
 Json json_row(const char* key, const std::string& name, const Row& row, const Column<Row> (&columns)[N]) {
   Json json = {{key, name}};
-  for (const Column<Row>& column : columns) {
-    const double value = column.value(row);
-    json[column.name] = std::isfinite(value) ? Json(value) : Json(nullptr);
-  }
+  put(json, columns, row);
   return json;
 }
 
@@ -140,7 +114,7 @@ Table loss_table(const FactoringReport& report) {
   Table table{{"picture", "RMS", "max", "PSNR dB", "SSIM", "FLIP", "pixels changed %"}, {}, 1};
   for (const PictureLoss& loss : report.result.losses) {
     const DiffSummary s = summarize(loss.frames);
-    table.rows.push_back({name(loss.picture), fixed(rms_code_values(s.mean), 3),
+    table.rows.push_back({name(loss.picture), fixed(rms_code_values(s.mean.psnr_db), 3),
                           std::to_string(s.worst.max_difference), fixed(s.mean.psnr_db, 2),
                           fixed(s.mean.ssim, 5), fixed(s.mean.flip, 5), percent(s.mean.changed_pixels, 2)});
   }
@@ -175,24 +149,23 @@ std::string savings(const FactoringReport& report) {
 
 }  // namespace
 
-double rms_code_values(const Quality& quality) { return 255 * std::pow(10, -quality.psnr_db / 20); }
-
 std::string pictures_csv(const FactoringReport& report) {
-  std::string csv = csv_header("picture", kLossColumns);
+  std::string csv = "picture" + csv_names(kLossColumns) + "\n";
   for (const PictureLoss& loss : report.result.losses)
     csv += csv_line(name(loss.picture), loss, kLossColumns);
   return csv;
 }
 
 std::string layers_csv(const FactoringReport& report) {
-  std::string csv = csv_header("layer", kLayerColumns);
+  std::string csv = "layer" + csv_names(kLayerColumns) + "\n";
   for (const FactoredLayer& layer : layers_and_frame(report))
     csv += csv_line(layer.name, layer, kLayerColumns);
   return csv;
 }
 
 std::string costs_csv(const FactoringReport& report) {
-  return csv_header("sequence", kCostColumns) + csv_line("factored", report.result.factored, kCostColumns) +
+  return "sequence" + csv_names(kCostColumns) + "\n" +
+         csv_line("factored", report.result.factored, kCostColumns) +
          csv_line("unfactored", report.result.unfactored, kCostColumns);
 }
 
@@ -241,12 +214,10 @@ void print_report(const FactoringReport& report, std::ostream& out) {
          "\nunexplained: measured - predicted; elsewhere: measured where nothing is predicted; bound: of "
          "rounding (8-bit sprites, 16-bit compositor);"
          "\nof it: the largest share of its own bound that an unexplained error reaches; beyond: how many "
-         "are "
-         "larger\n"
+         "are larger\n"
       << plain_text(prediction_table(report))
       << "\nwhat is lost, against the unfactored truth: code values of the sRGB frame; each + adds to the "
-         "line "
-         "above\n"
+         "line above\n"
       << plain_text(loss_table(report));
   if (report.result.blends_over_time)
     out << "textures are blended over time, which the unfactored sequence cannot: its truth has the blends "

@@ -3,7 +3,7 @@
 
 /// The results of `talisman accuracy --factoring`, as tables, CSV, JSON and pictures.
 ///
-/// - factoring.csv: one line per picture of factoring_experiment.h, how far it is from the unfactored truth
+/// - factoring.csv: one line per picture of experiment.h, how far it is from the unfactored truth
 /// - factoring-layers.csv: one line per factored layer, and one for the frame: predicted and measured error
 /// - factoring-costs.csv: the factored sequence and the unfactored one
 /// - factoring.json: talisman.factoring/1, all of it
@@ -19,24 +19,14 @@
 #include <iosfwd>
 #include <string>
 
-#include "sequences/experiments/factoring/experiment.h"
+#include "sequences/experiments/factoring/measured.h"
 
 namespace talisman::sequences {
-
-struct FactoringReport {
-  std::string sequence, policy, warp;
-  layers::ivec2 display_px{0, 0};
-  ExperimentFrames frames;
-  FactoringResult result;
-};
 
 std::string pictures_csv(const FactoringReport& report);
 std::string layers_csv(const FactoringReport& report);
 std::string costs_csv(const FactoringReport& report);
 std::string json_of(const FactoringReport& report);
-
-/// Root of the mean squared error, code values, from what PSNR says.
-double rms_code_values(const Quality& quality);
 
 /// Writes all files into the folder, which is there. Throws OutputError.
 void write_report(const FactoringReport& report, const std::string& dir);

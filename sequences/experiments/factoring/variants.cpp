@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chunker/sampling.h"
+#include "sequences/experiments/effect_removal.h"
 
 namespace talisman::sequences {
 namespace {

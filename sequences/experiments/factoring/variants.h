@@ -4,7 +4,7 @@
 /// Sequences that differ only in how their shading is factored, and how they are drawn so that nothing else
 /// differs: what the factoring experiment compares.
 
-#include "sequences/experiments/without_effect.h"
+#include "sequences/experiments/variant.h"
 
 namespace talisman::sequences {
 

@@ -160,10 +160,10 @@ CalibrationBin bin_around(double center, const Columns& columns) {
   }
   return {center,
           static_cast<int>(inside.error.size()),
-          quantile(inside.error, 0.5),
+          median(inside.error),
           quantile(inside.error, 0.25),
           quantile(inside.error, 0.75),
-          quantile(inside.shift, 0.5)};
+          median(inside.shift)};
 }
 
 CalibrationSummary summary_of(std::size_t index, std::span<const CalibrationSample> samples) {
@@ -188,7 +188,7 @@ CalibrationSummary summary_of(std::size_t index, std::span<const CalibrationSamp
     const RankCorrelation rank = spearman(columns.fiducial, columns.error);
     if (rank.defined && rank.n >= kEnoughSamples) rhos.push_back(rank.rho);
   }
-  summary.median_rho_of_layers = quantile(rhos, 0.5);
+  summary.median_rho_of_layers = median(rhos);
   summary.layers = static_cast<int>(rhos.size());
   for (int octave = -7; octave <= 9; ++octave) {
     const CalibrationBin bin = bin_around(std::exp2(octave), all);

@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// What does accuracy cost in time, for the whole pipeline? Every setting of regulator_settings.h on the same
+/// What does accuracy cost in time, for the whole pipeline? Every setting of settings.h on the same
 /// frames.
 ///
-/// Plans are made of every frame of the range (and of those before it, as in any run). Pictures are drawn of
-/// some: the range is cut into strata of `every` frames, and in each one frame f and its predecessor f - 1
-/// are drawn, f for quality and time, both for popping. In its stratum f is the frame whose phases in the
-/// periods of hold and interpolate (f mod 2, 3, 5, 8) were met least so far, each weighted by its period, and
-/// of those the one nearest to the middle: so no policy is seen at its renders, or between them, too often. A
-/// sprite that was planned for a frame between is drawn when f - 1 needs it (step.h), outside of all that is
-/// timed. every = 1 draws all.
+/// Plans are made of every frame of the range, pictures of those that sampled_frames.h chooses and of their
+/// predecessors: frame f for quality and time, f - 1 and f for popping. A sprite that was planned for a frame
+/// between is drawn when f - 1 needs it (step.h), outside of all that is timed.
 ///
 /// Frame by frame all settings advance side by side; the frame of `reference`, the first of them, is the
 /// truth of the others and is drawn once. Memory: sprites and two pictures per setting, numbers of a few
@@ -25,14 +21,6 @@
 #include "sequences/files/progress.h"
 
 namespace talisman::sequences {
-
-struct ExperimentFrames {
-  int first = 0, last = 0;  ///< inclusive
-  int every = 1;            ///< ≥ 1: one frame of so many is drawn; more is quicker and less certain
-};
-
-/// The frames f that are drawn together with their predecessors, ascending; at least one.
-std::vector<int> sampled_frames(const ExperimentFrames& frames);
 
 /// Polygons of all layers in view, mean over the frames: what `reference` draws.
 double reference_polygons_per_frame(const Sequence& sequence, const Settings& settings,

@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "sequences/experiments/regulator/experiment.h"
+#include "sequences/content/sequence.h"
+#include "sequences/experiments/sampled_frames.h"
+#include "sequences/pipeline/step.h"
 
 namespace talisman::sequences {
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sequences/experiments/large_plot.h"
+#include "sequences/experiments/statistics.h"
 #include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
@@ -37,15 +39,7 @@ PlotSeries series_of(const RegulatorReport& report, const Scatter& at, const std
   return series;
 }
 
-PlotSeries front_of(const Scatter& at) {
-  const std::vector<bool> front = pareto_front(at.x, at.y);
-  PlotSeries series{"Pareto front", {}, SeriesStyle::Steps, {}};
-  for (std::size_t k = 0; k < front.size(); ++k)
-    if (front[k]) series.points.push_back({at.x[k], at.y[k]});
-  std::sort(series.points.begin(), series.points.end(),
-            [](const PlotPoint& a, const PlotPoint& b) { return a.x < b.x; });
-  return series;
-}
+PlotSeries front_of(const Scatter& at) { return front_series(at.x, at.y, pareto_front(at.x, at.y)); }
 
 /// The full price as a vertical line, since an error of 0 has no place on a logarithmic axis.
 PlotSeries reference_line(const Scatter& at) {
@@ -175,17 +169,14 @@ Plot calibration_plot(const RegulatorReport& report, std::size_t index) {
 }
 
 void write_regulator_plots(const RegulatorReport& report, const std::string& dir) {
-  PlotFiles files;
-  files.width_px = 1000;
-  files.height_px = 640;
-  write_plot(dir, "regulator", time_plot(report), files);
-  write_plot(dir, "regulator-polygons", polygon_plot(report), files);
-  write_plot(dir, "regulator-bound", bound_plot(report), files);
-  write_plot(dir, "regulator-popping", popping_plot(report), files);
-  write_plot(dir, "lookahead", lookahead_plot(report.lookahead), files);
+  write_plot(dir, "regulator", time_plot(report), kLargePlot);
+  write_plot(dir, "regulator-polygons", polygon_plot(report), kLargePlot);
+  write_plot(dir, "regulator-bound", bound_plot(report), kLargePlot);
+  write_plot(dir, "regulator-popping", popping_plot(report), kLargePlot);
+  write_plot(dir, "lookahead", lookahead_plot(report.lookahead), kLargePlot);
   for (std::size_t index = 0; index < report.calibration.size(); ++index)
     write_plot(dir, std::string("calibration-") + report.calibration[index].fiducial->name,
-               calibration_plot(report, index), files);
+               calibration_plot(report, index), kLargePlot);
 }
 
 }  // namespace talisman::sequences

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The pictures of regulator_report.h: one series per policy, the oracle in black.
+/// The pictures of report.h: one series per policy, the oracle in black.
 
 #include <string>
 #include <vector>
 
-#include "sequences/experiments/regulator/report.h"
+#include "sequences/experiments/regulator/measured.h"
 #include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {

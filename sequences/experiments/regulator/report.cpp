@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/experiments/regulator/report.h"
 
-#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
-#include "layers/check.h"
+#include "sequences/experiments/columns.h"
 #include "sequences/experiments/regulator/plots.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
@@ -18,24 +16,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string text(const char* pattern, double value) {
-  if (!std::isfinite(value)) return "";
-  char buffer[64];
-  std::snprintf(buffer, sizeof buffer, pattern, value);
-  return buffer;
-}
-
-std::string exact(double value) { return text("%.9g", value); }
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-/// A measured quantity of a setting, named once for CSV and JSON.
-struct Column {
-  const char* name;
-  double (*value)(const SettingResult&);
-};
-
-constexpr Column kColumns[] = {
+constexpr Column<SettingResult> kColumns[] = {
     {"mean_update_rate", [](const SettingResult& r) { return r.mean_update_rate; }},
     {"weighted_update_rate", [](const SettingResult& r) { return r.weighted_update_rate; }},
     {"renders", [](const SettingResult& r) { return double(r.renders); }},
@@ -67,7 +48,7 @@ Json settings_json(const RegulatorReport& report) {
     Json json = {{"policy", result.setting.series},
                  {"knob", result.setting.unit.empty() ? Json(nullptr) : Json(result.setting.value)},
                  {"knob_unit", result.setting.unit}};
-    for (const Column& column : kColumns) json[column.name] = number(column.value(result));
+    put(json, kColumns, result);
     all.push_back(json);
   }
   return all;
@@ -103,7 +84,7 @@ Json calibration_json(const RegulatorReport& report) {
                       {"median_error", bin.median_error},
                       {"lower_quartile_error", bin.lower_error},
                       {"upper_quartile_error", bin.upper_error},
-                      {"median_psnr_db", number(bin.psnr_db())},
+                      {"median_psnr_db", number_or_null(bin.psnr_db())},
                       {"median_apparent_shift_px", bin.median_shift_px}});
     all.push_back({{"fiducial", c.fiducial->name},
                    {"unit", c.fiducial->unit},
@@ -200,32 +181,13 @@ std::string size_text(layers::ivec2 px) { return std::to_string(px.x) + "x" + st
 
 }  // namespace
 
-std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error) {
-  TALISMAN_CHECK_EQ(cost.size(), error.size());
-  std::vector<std::size_t> order;
-  for (std::size_t k = 0; k < cost.size(); ++k)
-    if (!std::isnan(cost[k]) && !std::isnan(error[k])) order.push_back(k);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return cost[a] != cost[b] ? cost[a] < cost[b] : error[a] < error[b];
-  });
-  std::vector<bool> front(cost.size(), false);
-  double best = HUGE_VAL;
-  for (const std::size_t k : order)
-    if (error[k] < best) front[k] = true, best = error[k];
-  return front;
-}
-
 std::string settings_csv(const RegulatorReport& report) {
-  std::string csv = "policy,knob,knob_unit,pareto_polygons";
-  for (const Column& column : kColumns) csv += std::string(",") + column.name;
-  csv += "\n";
+  std::string csv = "policy,knob,knob_unit,pareto_polygons" + csv_names(kColumns) + "\n";
   const std::vector<bool> front = polygon_front(report);
   for (std::size_t k = 0; k < report.settings.size(); ++k) {
     const RegulatorSetting& setting = report.settings[k].setting;
     csv += setting.series + "," + (setting.unit.empty() ? "" : exact(setting.value)) + "," + setting.unit +
-           (front[k] ? ",1" : ",0");
-    for (const Column& column : kColumns) csv += "," + exact(column.value(report.settings[k]));
-    csv += "\n";
+           (front[k] ? ",1" : ",0") + csv_cells(kColumns, report.settings[k]) + "\n";
   }
   return csv;
 }
@@ -236,9 +198,8 @@ std::string samples_csv(const RegulatorReport& report) {
     csv += std::string(",") + fiducial.name + (std::string(fiducial.unit) == "%" ? "_percent" : "_px");
   csv += ",error,psnr_db,apparent_shift_px,pixels\n";
   for (const CalibrationSample& s : report.samples) {
-    std::string layer = report.layers[s.layer];
-    for (std::size_t at = 0; (at = layer.find('"', at)) != std::string::npos; at += 2) layer.insert(at, "\"");
-    csv += std::to_string(s.frame) + ",\"" + layer + "\"," + std::to_string(s.age_frames);
+    csv +=
+        std::to_string(s.frame) + "," + quoted(report.layers[s.layer]) + "," + std::to_string(s.age_frames);
     for (const double value : s.fiducials) csv += "," + exact(value);
     csv += "," + exact(s.error) + "," + exact(s.error > 0 ? 20 * std::log10(255 / s.error) : HUGE_VAL) + "," +
            exact(s.apparent_shift_px) + "," + std::to_string(s.pixels) + "\n";
@@ -276,8 +237,7 @@ void print_report(const RegulatorReport& report, std::ostream& out) {
          "sum\n"
       << plain_text(cost_table(report))
       << "\nhow far from the truth: geometric error displayed; picture against reference; popping: step of "
-         "the"
-         "\nerror, code values, where sprites are drawn again (RMS, 95th percentile), and elsewhere; "
+         "the\nerror, code values, where sprites are drawn again (RMS, 95th percentile), and elsewhere; "
          "* least FLIP for its polygons\n"
       << plain_text(error_table(report)) << "\nlookahead at " << fixed(report.lookahead.geometric_px, 2)
       << " px, " << size_text(report.lookahead.display_px) << " px display, plan only\n"

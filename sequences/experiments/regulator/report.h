@@ -18,28 +18,10 @@
 
 #include <iosfwd>
 #include <string>
-#include <vector>
 
-#include "sequences/experiments/regulator/calibration.h"
-#include "sequences/experiments/regulator/experiment.h"
-#include "sequences/experiments/regulator/lookahead_curve.h"
+#include "sequences/experiments/regulator/measured.h"
 
 namespace talisman::sequences {
-
-struct RegulatorReport {
-  std::string sequence, warp;
-  layers::ivec2 display_px{0, 0};
-  ExperimentFrames frames;
-  std::vector<SettingResult> settings;  ///< `reference` first
-  LookaheadCurve lookahead;
-  std::vector<std::string> layers;  ///< names, by id
-  std::vector<CalibrationSample> samples;
-  std::vector<CalibrationSummary> calibration;
-};
-
-/// Which of the points are not beaten by another one that is as good in both and better in one; small is
-/// good. Of equal points the first counts; not-a-number is on no front.
-std::vector<bool> pareto_front(const std::vector<double>& cost, const std::vector<double>& error);
 
 std::string settings_csv(const RegulatorReport& report);
 std::string samples_csv(const RegulatorReport& report);

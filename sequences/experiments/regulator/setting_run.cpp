@@ -19,7 +19,7 @@ Timing timing_of(const std::vector<FrameLine>& lines, double FrameLine::*field) 
   std::vector<double> ms;
   for (const FrameLine& line : lines) ms.push_back(line.*field);
   if (ms.empty()) return {};
-  return {std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size()), quantile(ms, 0.5)};
+  return {std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size()), median(ms)};
 }
 
 }  // namespace

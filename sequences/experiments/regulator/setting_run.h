@@ -9,35 +9,12 @@
 #include <vector>
 
 #include "sequences/content/sequence.h"
-#include "sequences/experiments/regulator/popping.h"
-#include "sequences/experiments/regulator/settings.h"
+#include "sequences/experiments/regulator/measured.h"
 #include "sequences/pictures/diff.h"
-#include "sequences/pictures/quality.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {
-
-/// Milliseconds per frame.
-struct Timing {
-  double mean = 0;    ///< what a frame costs over a run
-  double median = 0;  ///< what most frames cost; 0 ms of rendering where most frames render nothing
-};
-
-struct SettingResult {
-  RegulatorSetting setting;
-  // From the plan of all frames.
-  double mean_update_rate = 0, weighted_update_rate = 0;  ///< 0 … 1; weighted by polygons
-  std::int64_t renders = 0, polygons = 0, pixels = 0, chunks = 0;
-  double mean_geometric_px = 0, max_geometric_px = 0;  ///< of what is displayed
-  Timing plan;
-  // From the frames that are drawn.
-  Timing render, composite;
-  double modelled_ms = 0;  ///< mean, by the profile talisman-1996
-  Quality quality;         ///< mean against `reference`; PSNR of the mean squared error
-  Popping popping;
-  double frame_ms() const { return plan.mean + render.mean + composite.mean; }
-};
 
 /// Keeps references to the sequence.
 class SettingRun {

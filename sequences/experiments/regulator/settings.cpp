@@ -4,6 +4,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sequences/experiments/sampled_frames.h"
+
 namespace talisman::sequences {
 namespace {
 
@@ -56,7 +58,6 @@ std::string RegulatorSetting::knob() const {
   return text;
 }
 
-std::vector<int> compared_holds() { return {2, 3, 5, 8}; }
 std::vector<double> compared_thresholds() { return {0.25, 0.5, 1, 2, 4, 8}; }
 std::vector<double> compared_budgets() { return {5, 10, 20, 40, 80}; }
 

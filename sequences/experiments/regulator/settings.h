@@ -27,8 +27,6 @@ struct RegulatorSetting {
 
 inline constexpr int kComparedLookahead = 16;
 
-/// Frames from one render to the next.
-std::vector<int> compared_holds();
 /// Pixels, ascending.
 std::vector<double> compared_thresholds();
 /// Per cent of the reference's polygons, ascending.

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sequences/experiments/regulator/report.h"
+#include "sequences/experiments/effect_removal.h"
+#include "sequences/experiments/renderer/measure.h"
+#include "sequences/experiments/statistics.h"
 #include "sequences/pipeline/step.h"
 
 namespace talisman::sequences {

@@ -3,7 +3,7 @@
 
 /// What does each knob of the renderer cost, and what does it buy? What does each effect?
 ///
-/// Knobs: every rung of renderer_settings.h on a few sampled frames, each drawn from nothing, against the one
+/// Knobs: every rung of knobs.h on a few sampled frames, each drawn from nothing, against the one
 /// stated truth. What all sprites lose, whatever the knob (over-only compositing of shade layers), would hide
 /// what one knob loses; so the error of the knob *alone* is against the same picture with this knob, too, as
 /// the truth has it: for knobs of the one pass that is the truth. Per rung, from the errors of the knob
@@ -16,7 +16,7 @@
 /// on what else the machine does. There is no price where the difference of the two times is within their
 /// spreads, and no gain in dB where one of the two is the truth.
 ///
-/// Effects: each one that is called for, taken away alone (without_effect.h). Those that change the picture
+/// Effects: each one that is called for, taken away alone (effect_removal.h). Those that change the picture
 /// of a single frame are judged on the sampled frames, under policy reference: the picture without against
 /// the picture with the effect is what it buys. Those that pay off only over time are judged in runs through
 /// consecutive frames under the sequence's own policy, with and without, each against its own `direct`.
@@ -24,59 +24,22 @@
 /// Times are measured on this machine and differ from run to run; all other numbers are the same in every
 /// run.
 
-#include <optional>
 #include <vector>
 
-#include "sequences/experiments/renderer/knobs.h"
-#include "sequences/experiments/renderer/measure.h"
+#include "sequences/experiments/renderer/measured.h"
+#include "sequences/files/progress.h"
 
 namespace talisman::sequences {
 
-/// NaN where there is none.
-struct Gain {
-  double db_per_ms = NAN, flip_per_ms = NAN;
-};
 /// From the coarser to the finer of two rungs.
 Gain gain_of(const Measured& coarser, const PictureError& coarser_error, const Measured& finer,
              const PictureError& finer_error);
-
-struct RungResult {
-  std::size_t knob = 0, rung = 0, variant = 0;
-  PictureError error, alone;  ///< against the truth; of the knob alone
-  double work = 0;            ///< of the knob's WorkKind, per frame
-  Gain gain;                  ///< relative to the rung before; none for the first
-  bool work_front = false;    ///< no other rung of its knob has as little FLIP for as little work
-  bool wall_front = false;    ///< … for as little measured time
-};
-
-struct KnobResults {
-  RendererLadder ladder;
-  std::vector<int> frames;
-  std::vector<Measured> measured;  ///< by variant
-  std::vector<RungResult> rungs;   ///< knob by knob
-};
 
 /// Work of a kind that a variant did for a frame.
 double work_of(WorkKind kind, const Variant& variant, const Measured& measured);
 
 KnobResults measure_knobs(const Variant& given, const std::vector<int>& frames, int rounds,
                           ProgressKind progress);
-
-struct EffectResult {
-  layers::EffectCall call;
-  std::size_t without = 0;  ///< index into EffectResults::frames or ::runs; 0 is with all effects
-  /// Of a picture effect: without against with. Else without against its own `direct`.
-  PictureError error;
-};
-
-struct EffectResults {
-  Workload frame_load, run_load;
-  std::vector<Measured> frames, runs;  ///< [0]: with all effects
-  std::vector<EffectResult> pictures;  ///< effects of a single frame
-  std::vector<EffectResult> over_time;
-  PictureError run_error;  ///< with all effects, against `direct`
-  std::vector<layers::EffectCall> not_called;
-};
 
 /// Does the effect pay off only over several frames?
 bool pays_over_time(layers::Effect effect);

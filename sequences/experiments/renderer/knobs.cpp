@@ -6,6 +6,8 @@
 #include <initializer_list>
 #include <utility>
 
+#include "sequences/experiments/effect_removal.h"
+
 namespace talisman::sequences {
 namespace {
 
@@ -13,7 +15,7 @@ using chunker::TextureFilter;
 using layers::Effect;
 using layers::LayerKind;
 
-constexpr int kFinestMapPx = 2048, kFinestPcfRadius = 3, kFinestAnisotropy = 16, kFinestSamples = 16;
+constexpr int kFinestMap_px = 2048, kFinestPcfRadius_texels = 3, kFinestAnisotropy = 16, kFinestSamples = 16;
 
 std::string number(double value, const char* unit = "") {
   char text[48];
@@ -123,12 +125,12 @@ void add_lights(LadderBuilder& ladder) {
   ladder.pass("shadow map", WorkKind::MapBytes, Effect::ShadowMap);
   for (const int px : {128, 256, 512, 1024})
     ladder.shadow_rung(number(px, " px"), [&](auto& shadow) { shadow.resolution_px = px; });
-  ladder.truth_rung(number(kFinestMapPx, " px"));
+  ladder.truth_rung(number(kFinestMap_px, " px"));
 
   ladder.pass("shadow filter", WorkKind::DepthCompares, Effect::ShadowMap);
   for (const int radius : {0, 1, 2})
     ladder.shadow_rung("radius " + number(radius), [&](auto& shadow) { shadow.pcf_radius = radius; });
-  ladder.truth_rung("radius " + number(kFinestPcfRadius));
+  ladder.truth_rung("radius " + number(kFinestPcfRadius_texels));
 }
 
 /// Layers of `kind`, or all shade layers, at each resolution below that of the display.
@@ -213,8 +215,8 @@ const char* name(WorkKind kind) {
 
 std::string truth_in_words() {
   return "one pass, " + number(kFinestSamples) + " samples, no merging of fragments, anisotropy " +
-         number(kFinestAnisotropy) + ", Phong, shadow maps of " + number(kFinestMapPx) +
-         " px with filter radius " + number(kFinestPcfRadius);
+         number(kFinestAnisotropy) + ", Phong, shadow maps of " + number(kFinestMap_px) +
+         " px with filter radius " + number(kFinestPcfRadius_texels);
 }
 
 Variant finest(const Variant& given) {
@@ -232,8 +234,8 @@ Variant finest(const Variant& given) {
   settings.regulator.policy = regulator::Policy::Direct;
   if (!effect_call(given, Effect::ShadowMap).called) return truth;
   return with_shadow_options(truth, [](layers::ShadowMapOptions& shadow) {
-    shadow.resolution_px = kFinestMapPx;
-    shadow.pcf_radius = kFinestPcfRadius;
+    shadow.resolution_px = kFinestMap_px;
+    shadow.pcf_radius = kFinestPcfRadius_texels;
   });
 }
 

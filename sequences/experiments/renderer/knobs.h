@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "sequences/experiments/without_effect.h"
+#include "sequences/experiments/variant.h"
 
 namespace talisman::sequences {
 

@@ -19,10 +19,10 @@ namespace {
 
 WallTime wall_time(const std::vector<double>& ms) {
   WallTime time;
-  time.median_ms = quantile(ms, 0.5);
+  time.median_ms = median(ms);
   std::vector<double> deviations;
   for (const double value : ms) deviations.push_back(std::fabs(value - time.median_ms));
-  time.spread_ms = quantile(deviations, 0.5);
+  time.spread_ms = median(deviations);
   return time;
 }
 
@@ -141,7 +141,7 @@ PictureError error_of(const std::vector<Image8>& shown, const std::vector<Image8
   PictureError error;
   error.quality = summary.mean;
   error.quality.max_difference = summary.worst.max_difference;
-  error.rms_code_values = 255 * std::pow(10, -summary.mean.psnr_db / 20);  // 0 for an infinite PSNR
+  error.rms_code_values = rms_code_values(summary.mean.psnr_db);
   return error;
 }
 

@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "sequences/experiments/large_plot.h"
+
 namespace talisman::sequences {
 namespace {
 
@@ -89,15 +91,12 @@ Plot run_plot(const RendererReport& report) {
 }
 
 void write_renderer_plots(const RendererReport& report, const std::string& dir) {
-  PlotFiles files;
-  files.width_px = 1000;
-  files.height_px = 640;
-  write_plot(dir, "renderer-pixels", knob_time_plot(report, false), files);
-  write_plot(dir, "renderer-pixels-work", knob_work_plot(report, false), files);
-  write_plot(dir, "renderer-sprites", knob_time_plot(report, true), files);
-  write_plot(dir, "renderer-sprites-work", knob_work_plot(report, true), files);
-  write_plot(dir, "renderer-effects", effect_plot(report), files);
-  write_plot(dir, "renderer-over-time", run_plot(report), files);
+  write_plot(dir, "renderer-pixels", knob_time_plot(report, false), kLargePlot);
+  write_plot(dir, "renderer-pixels-work", knob_work_plot(report, false), kLargePlot);
+  write_plot(dir, "renderer-sprites", knob_time_plot(report, true), kLargePlot);
+  write_plot(dir, "renderer-sprites-work", knob_work_plot(report, true), kLargePlot);
+  write_plot(dir, "renderer-effects", effect_plot(report), kLargePlot);
+  write_plot(dir, "renderer-over-time", run_plot(report), kLargePlot);
 }
 
 }  // namespace talisman::sequences

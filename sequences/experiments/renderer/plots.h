@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The plots of renderer_report.h: one series per knob, its rungs labelled. What has no error has no place on
+/// The plots of report.h: one series per knob, its rungs labelled. What has no error has no place on
 /// a logarithmic axis and is left out.
 
 #include <string>
 
-#include "sequences/experiments/renderer/report.h"
+#include "sequences/experiments/renderer/measured.h"
 #include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {

@@ -2,11 +2,11 @@
 #include "sequences/experiments/renderer/report.h"
 
 #include <cmath>
-#include <cstdio>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/experiments/columns.h"
 #include "sequences/experiments/renderer/plots.h"
 #include "sequences/experiments/renderer/sheets.h"
 #include "sequences/files/atomic_file.h"
@@ -16,22 +16,6 @@ namespace talisman::sequences {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-std::string exact(double value) {
-  if (!std::isfinite(value)) return "";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-/// A quantity, named once for CSV and JSON. Counts are those of a frame.
-template <typename Source>
-struct Column {
-  const char* name;
-  double (*value)(const Source&);
-};
 
 using chunker::RenderCounters;
 
@@ -83,25 +67,6 @@ constexpr Column<RungResult> kRung[] = {
     {"wall_gain_db_per_cpu_ms", [](const RungResult& r) { return r.gain.db_per_ms; }},
     {"wall_gain_flip_per_cpu_ms", [](const RungResult& r) { return r.gain.flip_per_ms; }},
 };
-
-template <typename Columns>
-std::string header(const Columns& columns) {
-  std::string csv;
-  for (const auto& column : columns) csv += std::string(",") + column.name;
-  return csv;
-}
-
-template <typename Columns, typename Source>
-std::string cells(const Columns& columns, const Source& source) {
-  std::string csv;
-  for (const auto& column : columns) csv += "," + exact(column.value(source));
-  return csv;
-}
-
-template <typename Columns, typename Source>
-void put(Json& json, const Columns& columns, const Source& source) {
-  for (const auto& column : columns) json[column.name] = number(column.value(source));
-}
 
 // --- JSON
 
@@ -273,25 +238,25 @@ std::string list_of(const std::vector<int>& frames) {
 
 std::string knobs_csv(const RendererReport& report) {
   const KnobResults& results = report.knobs;
-  std::string csv =
-      "knob,rung,in_sprites,is_truth,work_unit" + header(kError) + header(kRung) + header(kMeasured) + "\n";
+  std::string csv = "knob,rung,in_sprites,is_truth,work_unit" + csv_names(kError) + csv_names(kRung) +
+                    csv_names(kMeasured) + "\n";
   for (const RungResult& rung : results.rungs) {
     const Knob& knob = results.ladder.knobs[rung.knob];
     csv += knob.name + "," + knob.rungs[rung.rung].label + (knob.in_sprites ? ",1" : ",0") +
-           (rung.variant == kTruth ? ",1," : ",0,") + name(knob.work) + cells(kError, rung.error) +
-           cells(kRung, rung) + cells(kMeasured, results.measured[rung.variant]) + "\n";
+           (rung.variant == kTruth ? ",1," : ",0,") + name(knob.work) + csv_cells(kError, rung.error) +
+           csv_cells(kRung, rung) + csv_cells(kMeasured, results.measured[rung.variant]) + "\n";
   }
   return csv;
 }
 
 std::string effects_csv(const RendererReport& report) {
   const EffectResults& effects = report.effects;
-  std::string csv = "workload,without" + header(kError) + header(kMeasured) + "\n";
+  std::string csv = "workload,without" + csv_names(kError) + csv_names(kMeasured) + "\n";
   const auto line = [&](const char* load, const std::string& without, const PictureError* error,
                         const Measured& measured) {
     csv += std::string(load) + "," + without +
-           (error ? cells(kError, *error) : std::string(std::size(kError), ',')) +
-           cells(kMeasured, measured) + "\n";
+           (error ? csv_cells(kError, *error) : std::string(std::size(kError), ',')) +
+           csv_cells(kMeasured, measured) + "\n";
   };
   line("frames", "", nullptr, effects.frames[0]);
   for (const EffectResult& effect : effects.pictures)

@@ -18,18 +18,9 @@
 #include <iosfwd>
 #include <string>
 
-#include "sequences/experiments/renderer/experiment.h"
+#include "sequences/experiments/renderer/measured.h"
 
 namespace talisman::sequences {
-
-struct RendererReport {
-  std::string sequence;
-  layers::ivec2 display_px{0, 0};
-  int rounds = 0;
-  std::string policy;  ///< of the runs
-  KnobResults knobs;
-  EffectResults effects;
-};
 
 std::string knobs_csv(const RendererReport& report);
 std::string effects_csv(const RendererReport& report);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "layers/check.h"
+#include "sequences/experiments/renderer/measure.h"
 #include "sequences/pictures/page.h"
 
 namespace talisman::sequences {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The contact sheets of renderer_report.h: of all places and sampled frames the one where the rungs of a
+/// The contact sheets of report.h: of all places and sampled frames the one where the rungs of a
 /// knob differ most from its base (the picture with this knob, too, as the truth has it), at each rung, the
 /// truth last; below, the difference from the base, brightened by a power of two that is written above.
 
 #include <string>
 
-#include "sequences/experiments/renderer/report.h"
+#include "sequences/experiments/renderer/measured.h"
 #include "sequences/pictures/picture_sheet.h"
 
 namespace talisman::sequences {

@@ -47,7 +47,7 @@ std::vector<WarpObject> load_warp_objects(std::vector<MissingObject>& missing);
 /// taken as up. Throws InputError: another header, no patch, a half patch, a number that is not finite.
 layers::Mesh read_bezier_patches(const std::string& file, int cells = 8);
 
-/// One way to move. Times run from 0 to kMotionSeconds.
+/// One way to move. Times run from 0 to kMotion_s.
 struct WarpMotion {
   std::string name;                   ///< "rotate-translate", "head-turn", "translate", "spin-x-5", …
   std::string title;                  ///< in words
@@ -55,8 +55,8 @@ struct WarpMotion {
 };
 
 inline constexpr int kCameraNode = 0, kObjectNode = 1;
-inline constexpr double kMotionSeconds = 10, kMotionFps = 30;
-inline constexpr int kMotionFrames = 300;
+inline constexpr double kMotion_s = 10, kMotion_fps = 30;
+inline constexpr int kMotion_frames = 300;
 
 /// Rotating and translating first, which is the paper's figure; then head turning, translation, and rotation
 /// about x, y and z at 5, 20 and 80 degrees per second (0.17, 0.67 and 2.7 degrees per frame).

@@ -10,12 +10,12 @@ namespace talisman::sequences {
 namespace {
 
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kDisplayPx = kWorkloadDisplayPx;
+constexpr double kDisplay_px = kWorkloadDisplay_px;
 
 dvec2 project(dvec3 camera_point) {
-  static const double focal = kDisplayPx / 2 / std::tan(kPi / 8);
+  static const double focal = kDisplay_px / 2 / std::tan(kPi / 8);
   const double w = -camera_point.z;
-  return {kDisplayPx / 2 + focal * camera_point.x / w, kDisplayPx / 2 - focal * camera_point.y / w};
+  return {kDisplay_px / 2 + focal * camera_point.x / w, kDisplay_px / 2 - focal * camera_point.y / w};
 }
 
 /// Point i of the unit box -1 … 1: 27 places of the lattice {-1, 0, 1}³ by rank, the centre left out; then

@@ -50,8 +50,8 @@ struct SpacePairs {
 Pairs moving_box(std::uint64_t seed, int points);
 SpacePairs moving_box_in_space(std::uint64_t seed, int points);
 /// The display and the vertical field of view of the workload.
-inline constexpr int kWorkloadDisplayPx = 1024;
-inline constexpr double kWorkloadFovRad = 0.78539816339744831;
+inline constexpr int kWorkloadDisplay_px = 1024;
+inline constexpr double kWorkloadFov_rad = 0.78539816339744831;
 
 /// Points then at random in a square of the given half side about `centre`; now = `map` of them.
 Pairs exact_affine(std::uint64_t seed, int points, const Affine2& map, double half_side_px = 100,

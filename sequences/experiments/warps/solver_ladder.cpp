@@ -147,8 +147,8 @@ LadderInput workload_input(std::uint64_t seed, int points) {
   LadderInput input = ladder_input(moving_box(seed, points));
   const SpacePairs space = moving_box_in_space(seed, points);
   for (auto [state, world] : {std::pair{&input.then, &space.then_m}, std::pair{&input.now, &space.now_m}}) {
-    state->view.display_px = {kWorkloadDisplayPx, kWorkloadDisplayPx};
-    state->camera.fov_y_rad = kWorkloadFovRad;
+    state->view.display_px = {kWorkloadDisplay_px, kWorkloadDisplay_px};
+    state->camera.fov_y_rad = kWorkloadFov_rad;
     state->camera.near_m = 0.01;
     state->world_points = *world;
   }

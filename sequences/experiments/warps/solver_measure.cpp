@@ -20,7 +20,7 @@ using warp::FitResult;
 constexpr std::array kFamilies = {Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine,
                                   Family::Perspective};
 /// Below this an optimum counts as this, so that exact fits do not divide by zero.
-constexpr double kSmallestOptimumPx = 1e-6;
+constexpr double kSmallestOptimum_px = 1e-6;
 
 Curve least_squares_curve(Family family) {
   constexpr std::array curves = {Curve::trn, Curve::iso, Curve::so, Curve::aff, Curve::per2};
@@ -130,13 +130,13 @@ double error_of(const warp::Warp& warp, const LadderInput& input) {
   return static_cast<double>(largest);
 }
 
-constexpr double kStablePx = 1e-3;
+constexpr double kStable_px = 1e-3;
 
 bool keeps(const Solver& solver, double offset_px, double sprite_px) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     const LadderInput input = exact_input(solver.family, seed, offset_px, sprite_px);
     const FitResult result = solver.prepare(input)();
-    if (!result.usable() || !(error_of(result.warp, input) <= kStablePx)) return false;
+    if (!result.usable() || !(error_of(result.warp, input) <= kStable_px)) return false;
   }
   return true;
 }
@@ -190,12 +190,12 @@ FitAccuracy accuracy_of(const Solver& solver, const Workbench& bench, int count)
   double sum_px = 0;
   for (int i = 0; i < count; ++i) {
     const FitResult result = solver.prepare(bench.inputs[i])();
-    const double excess = (result.max_px - least_max_px[i]) / std::fmax(least_max_px[i], kSmallestOptimumPx);
+    const double excess = (result.max_px - least_max_px[i]) / std::fmax(least_max_px[i], kSmallestOptimum_px);
     sum_px += result.max_px;
     accuracy.mean_excess += excess / count;
     accuracy.worst_excess = std::fmax(accuracy.worst_excess, excess);
     accuracy.mean_rms_excess +=
-        (result.rms_px - least_rms_px[i]) / std::fmax(least_rms_px[i], kSmallestOptimumPx) / count;
+        (result.rms_px - least_rms_px[i]) / std::fmax(least_rms_px[i], kSmallestOptimum_px) / count;
     accuracy.unfinished += result.status != warp::FitStatus::Converged;
     const double gap_px = result.max_px - result.max_lower_bound_px;
     // An error at rounding level is as certain as a number can be.

@@ -3,8 +3,6 @@
 #include "sequences/commands/accuracy_factoring.h"
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -13,9 +11,11 @@
 
 #include "sequences/commands/accuracy.h"
 #include "sequences/experiments/factoring/pictures.h"
+#include "sequences/experiments/factoring/variants.h"
+#include "sequences/experiments/statistics.h"
 #include "sequences/pipeline/layer_planning.h"
+#include "tests/sequences/commands/experiment_files.h"
 #include "tests/sequences/room_sequence.h"
-#include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
 namespace {
@@ -23,12 +23,7 @@ namespace {
 using testing::HasSubstr;
 using tests::Room;
 
-RegulatorCommandOptions quick() {
-  RegulatorCommandOptions options;
-  options.quality_every = 4;
-  options.progress = "none";
-  return options;
-}
+ExperimentOptions quick() { return tests::quick_options("", "", 4); }
 
 /// All terms, on a floor that the shadow leaves.
 Room full_room() {
@@ -88,7 +83,7 @@ TEST(MeasureFactoring, CoarserShadeLayersLoseMore) {
     (*term)->resolution_scale = 0.25;
   const FactoringResult result = measured(room).result;
   const auto rms = [&](Picture picture) {
-    return rms_code_values(summarize(result.losses[static_cast<std::size_t>(picture)].frames).mean);
+    return rms_code_values(summarize(result.losses[static_cast<std::size_t>(picture)].frames).mean.psnr_db);
   };
   EXPECT_GT(rms(Picture::ShadeResolution), 1.5 * rms(Picture::OverAlone));
   EXPECT_LT(rms(Picture::OverAlone), 1.5);
@@ -112,7 +107,8 @@ TEST(MeasureFactoring, BlendOverTimeIsJudgedByATruthOfItsOwn) {
   EXPECT_TRUE(result.blends_over_time);
   EXPECT_EQ(result.frame.beyond_bound, 0);
   // One pass of the renderer blends as the material says; its truth does, too.
-  EXPECT_LT(rms_code_values(summarize(result.losses[static_cast<std::size_t>(Picture::OnePass)].frames).mean),
+  EXPECT_LT(rms_code_values(
+                summarize(result.losses[static_cast<std::size_t>(Picture::OnePass)].frames).mean.psnr_db),
             2);
 }
 
@@ -169,20 +165,15 @@ TEST(FactoringVariants, TexelOnPixelWhateverTheSequenceAsksFor) {
   EXPECT_EQ(own.settings.placement.resolution_scale, 1);
 }
 
-std::string content(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 TEST(FactoringFiles, AllAreThereAndSayWhatWasMeasured) {
   const tests::TemporaryFolder folder;
   write_report(full_report(), folder.path());
-  for (const char* name :
-       {"factoring.csv", "factoring-layers.csv", "factoring-costs.csv", "factoring.json", "factoring.png",
-        "factoring-measured.png", "factoring-predicted.png", "factoring-difference.png",
-        "factoring-prediction.svg", "factoring-prediction.csv", "factoring-losses.svg"})
-    EXPECT_GT(content(folder.path() + "/" + name).size(), 100u) << name;
-  const nlohmann::json json = nlohmann::json::parse(content(folder.path() + "/factoring.json"));
+  tests::expect_files(
+      folder,
+      {"factoring.csv", "factoring-layers.csv", "factoring-costs.csv", "factoring.json", "factoring.png",
+       "factoring-measured.png", "factoring-predicted.png", "factoring-difference.png",
+       "factoring-prediction.svg", "factoring-prediction.csv", "factoring-losses.svg"});
+  const nlohmann::json json = nlohmann::json::parse(folder.read("factoring.json"));
   EXPECT_EQ(json["schema"], "talisman.factoring/1");
   EXPECT_EQ(json["display_px"], (nlohmann::json{160, 120}));
   EXPECT_EQ(json["pictures"].size(), kPictures.size());
@@ -198,11 +189,8 @@ TEST(FactoringFiles, AllButTheTimesIsTheSameInEveryRun) {
 }
 
 TEST(FactoringFiles, TableHasNoNumberThatIsNone) {
-  std::ostringstream out;
-  print_report(full_report(), out);
-  for (const char* text : {"2 of them drawn", "over alone", "+ reuse", "what factoring saves"})
-    EXPECT_THAT(out.str(), HasSubstr(text));
-  EXPECT_EQ(out.str().find("nan"), std::string::npos);
+  tests::expect_table(tests::printed(full_report()),
+                      {"2 of them drawn", "over alone", "+ reuse", "what factoring saves"});
 }
 
 TEST(ErrorMap, WhiteIsNoErrorAndColoursSayItsSign) {
@@ -226,6 +214,12 @@ TEST(RoundUp125, IsTheNextRoundNumber) {
   EXPECT_DOUBLE_EQ(round_up_125(0.02), 0.02);
   EXPECT_DOUBLE_EQ(round_up_125(0.3), 0.5);
   EXPECT_DOUBLE_EQ(round_up_125(0), 1e-4);
+}
+
+TEST(MeasureFactoringReport, BadOptionsAreNamed) {
+  tests::expect_bad_options_named(quick(), [](const ExperimentOptions& options) {
+    measure_factoring_report(tests::sequence_of(full_room(), 8), options);
+  });
 }
 
 TEST(MeasureFactoringReport, SequenceWithoutShadeLayersIsAnInputError) {

@@ -2,7 +2,6 @@
 // `accuracy --regulator` from the command to its files.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -10,27 +9,19 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/commands/accuracy.h"
+#include "sequences/commands/accuracy_regulator.h"
+#include "tests/sequences/commands/experiment_files.h"
 #include "tests/sequences/csv_rows.h"
-#include "tests/sequences/temporary_folder.h"
 #include "tests/support/sequences.h"
 
 namespace talisman::sequences {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
-using tests::content;
 using tests::rows_of;
 using tests::without_times;
 
-RegulatorCommandOptions quick() {
-  RegulatorCommandOptions options;
-  options.frames = "0-17";
-  options.size = "64x48";
-  options.quality_every = 6;
-  options.progress = "none";
-  return options;
-}
+ExperimentOptions quick() { return tests::quick_options("0-17", "64x48", 6); }
 
 const Sequence& moving() {
   static const Sequence sequence = tests::moving_sequence(48);
@@ -48,11 +39,10 @@ class RegulatorReportFiles : public testing::Test {
 
 TEST_F(RegulatorReportFiles, AllAreThere) {
   write_report(report(), folder_.path());
-  for (const char* name :
-       {"regulator.csv", "regulator.json", "regulator.svg", "regulator-polygons.svg", "regulator-bound.svg",
-        "regulator-popping.svg", "lookahead.csv", "lookahead.svg", "calibration.csv",
-        "calibration-geometric.svg", "calibration-magnification.svg", "calibration-visibility.svg"})
-    EXPECT_GT(content(folder_.path() + "/" + name).size(), 100u) << name;
+  tests::expect_files(folder_, {"regulator.csv", "regulator.json", "regulator.svg", "regulator-polygons.svg",
+                                "regulator-bound.svg", "regulator-popping.svg", "lookahead.csv",
+                                "lookahead.svg", "calibration.csv", "calibration-geometric.svg",
+                                "calibration-magnification.svg", "calibration-visibility.svg"});
 }
 
 TEST_F(RegulatorReportFiles, CsvHasOneFullLinePerSettingWithFiniteNumbers) {
@@ -98,29 +88,24 @@ TEST_F(RegulatorReportFiles, AllButTheTimesIsTheSameInEveryRun) {
 }
 
 TEST_F(RegulatorReportFiles, OneFrameIsEnough) {
-  RegulatorCommandOptions options = quick();
+  ExperimentOptions options = quick();
   options.frames = "0";
   const RegulatorReport single = measure_regulator_report(moving(), options);
   EXPECT_TRUE(single.samples.empty()) << "there is no older sprite";
   write_report(single, folder_.path());
-  EXPECT_THAT(content(folder_.path() + "/calibration-geometric.svg"), HasSubstr("no data"));
-  std::ostringstream out;
-  print_report(single, out);
-  EXPECT_THAT(out.str(), HasSubstr("frames 0-0 planned"));
+  EXPECT_THAT(folder_.read("calibration-geometric.svg"), HasSubstr("no data"));
+  EXPECT_THAT(tests::printed(single), HasSubstr("frames 0-0 planned"));
 }
 
 TEST_F(RegulatorReportFiles, TheTableSaysWhatWasUsed) {
-  std::ostringstream out;
-  print_report(report(), out);
-  for (const char* text : {"frames 0-17 planned, 3 of them drawn", "64x48 px", "lookahead 16", "oracle"})
-    EXPECT_THAT(out.str(), HasSubstr(text));
-  EXPECT_EQ(out.str().find("nan"), std::string::npos);
+  tests::expect_table(tests::printed(report()),
+                      {"frames 0-17 planned, 3 of them drawn", "64x48 px", "lookahead 16", "oracle"});
 }
 
 TEST(MeasureRegulatorReport, DefaultsFitTheDisplayAndTheNumberOfFrames) {
   Sequence large = tests::moving_sequence(3);
   large.display_px = {1024, 256};
-  RegulatorCommandOptions options;
+  ExperimentOptions options;
   options.progress = "none";
   const RegulatorReport report = measure_regulator_report(large, options);
   EXPECT_EQ(report.display_px, layers::ivec2(512, 128));
@@ -131,15 +116,8 @@ TEST(MeasureRegulatorReport, DefaultsFitTheDisplayAndTheNumberOfFrames) {
 }
 
 TEST(MeasureRegulatorReport, BadOptionsAreNamed) {
-  const auto complaint = [](auto change) {
-    RegulatorCommandOptions options = quick();
-    change(options);
-    return tests::message_of([&] { measure_regulator_report(moving(), options); });
-  };
-  EXPECT_THAT(complaint([](auto& o) { o.frames = "3-99"; }), HasSubstr("--frames is '3-99'"));
-  EXPECT_THAT(complaint([](auto& o) { o.size = "64"; }), HasSubstr("--size is '64'"));
-  EXPECT_THAT(complaint([](auto& o) { o.quality_every = -1; }), HasSubstr("--quality-every is -1"));
-  EXPECT_THAT(complaint([](auto& o) { o.progress = "loud"; }), HasSubstr("--progress"));
+  tests::expect_bad_options_named(
+      quick(), [](const ExperimentOptions& options) { measure_regulator_report(moving(), options); });
 }
 
 TEST(RunAccuracy, ExactlyOneExperimentMustBeAskedFor) {

@@ -3,7 +3,6 @@
 #include "sequences/commands/accuracy_renderer.h"
 
 #include <cmath>
-#include <filesystem>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -14,8 +13,8 @@
 #include "sequences/experiments/renderer/plots.h"
 #include "sequences/experiments/renderer/sheets.h"
 #include "sequences/files/image_io.h"
+#include "tests/sequences/commands/experiment_files.h"
 #include "tests/sequences/csv_rows.h"
-#include "tests/sequences/temporary_folder.h"
 #include "tests/support/sequences.h"
 
 namespace talisman::sequences {
@@ -25,13 +24,7 @@ using testing::HasSubstr;
 using tests::rows_of;
 using tests::without_times;
 
-RegulatorCommandOptions quick() {
-  RegulatorCommandOptions options;
-  options.frames = "0-5";
-  options.size = "64x48";
-  options.progress = "none";
-  return options;
-}
+ExperimentOptions quick() { return tests::quick_options("0-5", "64x48"); }
 
 /// Without shadows, whose finest maps take long.
 const Sequence& shown() {
@@ -51,13 +44,12 @@ class RendererReportFiles : public testing::Test {
 
 TEST_F(RendererReportFiles, AllAreThere) {
   write_report(report(), folder_.path());
-  for (const char* name :
-       {"renderer.csv", "renderer-effects.csv", "renderer.json", "renderer-pixels.svg",
-        "renderer-pixels-work.csv", "renderer-sprites.svg", "renderer-sprites-work.svg",
-        "renderer-effects.svg", "renderer-over-time.svg", "effects.png", "knob-samples.png",
-        "knob-texture-filter.png", "knob-all-shade-layers.png", "knob-motion-blur.png"})
-    EXPECT_GT(tests::content(folder_.path() + "/" + name).size(), 100u) << name;
-  EXPECT_FALSE(std::filesystem::exists(folder_.path() + "/knob-shadow-map.png")) << "not called for";
+  tests::expect_files(folder_,
+                      {"renderer.csv", "renderer-effects.csv", "renderer.json", "renderer-pixels.svg",
+                       "renderer-pixels-work.csv", "renderer-sprites.svg", "renderer-sprites-work.svg",
+                       "renderer-effects.svg", "renderer-over-time.svg", "effects.png", "knob-samples.png",
+                       "knob-texture-filter.png", "knob-all-shade-layers.png", "knob-motion-blur.png"});
+  EXPECT_FALSE(folder_.names().contains("knob-shadow-map.png")) << "not called for";
 }
 
 TEST_F(RendererReportFiles, CsvHasOneFullLinePerRung) {
@@ -109,12 +101,9 @@ TEST_F(RendererReportFiles, AllButTheTimesIsTheSameInEveryRun) {
 }
 
 TEST_F(RendererReportFiles, TheTableSaysWhatWasUsed) {
-  std::ostringstream out;
-  print_report(report(), out);
-  for (const char* text : {"64x48 px", "median of 3 interleaved rounds", "one pass, 16 samples",
-                           "frames 0-5, policy threshold", "no light casts shadows", "anisotropy 8"})
-    EXPECT_THAT(out.str(), HasSubstr(text));
-  EXPECT_EQ(out.str().find("nan"), std::string::npos);
+  tests::expect_table(tests::printed(report()),
+                      {"64x48 px", "median of 3 interleaved rounds", "one pass, 16 samples",
+                       "frames 0-5, policy threshold", "no light casts shadows", "anisotropy 8"});
 }
 
 TEST_F(RendererReportFiles, PlotsHaveASeriesPerKnobThatIsMeasured) {
@@ -135,39 +124,32 @@ TEST_F(RendererReportFiles, ASheetShowsEveryRungAndTheTruth) {
 
 TEST(MeasureRendererReport, OfAPlainSceneHasNothingToShowOfWhatIsNotCalledFor) {
   const Sequence plain = tests::resting_sequence(1);
-  RegulatorCommandOptions options = quick();
+  ExperimentOptions options = quick();
   options.frames = "0";
   const RendererReport report = measure_renderer_report(plain, options);
   const tests::TemporaryFolder folder;
   write_report(report, folder.path());
-  EXPECT_FALSE(std::filesystem::exists(folder.path() + "/knob-texture-filter.png"));
-  std::ostringstream out;
-  print_report(report, out);
-  EXPECT_THAT(out.str(), HasSubstr("no material has a texture"));
-  EXPECT_EQ(out.str().find("effects over time"), std::string::npos);
+  EXPECT_FALSE(folder.names().contains("knob-texture-filter.png"));
+  const std::string table = tests::printed(report);
+  EXPECT_THAT(table, HasSubstr("no material has a texture"));
+  EXPECT_EQ(table.find("effects over time"), std::string::npos);
 }
 
 TEST(MeasureRendererReport, DefaultsFitTheDisplayAndTheNumberOfFrames) {
   Sequence large = tests::resting_sequence(100);
   large.display_px = {1024, 256};
   large.frames = 100;
-  RegulatorCommandOptions options;
+  ExperimentOptions options;
   options.progress = "none";
   const RendererReport report = measure_renderer_report(large, options);
   EXPECT_EQ(report.display_px, layers::ivec2(512, 128));
   EXPECT_EQ(report.knobs.frames.size(), std::size_t(kDefaultRendererSamples));
-  EXPECT_EQ(report.effects.run_load.frames.size(), std::size_t(kDefaultRunFrames));
+  EXPECT_EQ(report.effects.run_load.frames.size(), std::size_t(kDefaultRun_frames));
 }
 
 TEST(MeasureRendererReport, BadOptionsAreNamed) {
-  const auto complaint = [](auto change) {
-    RegulatorCommandOptions options = quick();
-    change(options);
-    return tests::message_of([&] { measure_renderer_report(shown(), options); });
-  };
-  EXPECT_THAT(complaint([](auto& o) { o.frames = "3-99"; }), HasSubstr("--frames is '3-99'"));
-  EXPECT_THAT(complaint([](auto& o) { o.size = "64"; }), HasSubstr("--size is '64'"));
-  EXPECT_THAT(complaint([](auto& o) { o.quality_every = -1; }), HasSubstr("--quality-every is -1"));
+  tests::expect_bad_options_named(
+      quick(), [](const ExperimentOptions& options) { measure_renderer_report(shown(), options); });
 }
 
 TEST(RunAccuracy, OfTheRendererNamesASequenceThatIsNotThere) {

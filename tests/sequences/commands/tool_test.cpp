@@ -2,19 +2,19 @@
 // The tool as a user meets it: exit codes, one clear error line, no half-written results, runs that can be
 // continued.
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <set>
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+
+#include "tests/sequences/temporary_folder.h"
 
 namespace talisman {
 namespace {
@@ -31,34 +31,22 @@ struct Outcome {
 
 class Tool : public ::testing::Test {
  protected:
-  void SetUp() override {
-    folder_ =
-        fs::temp_directory_path() / ("talisman_tool_test_" + std::to_string(getpid()) + "_" + unique_name());
-    fs::create_directories(folder_);
-    write("cube.obj", kCube);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
+  void SetUp() override { write("cube.obj", kCube); }
 
-  static std::string unique_name() { return ::testing::UnitTest::GetInstance()->current_test_info()->name(); }
   static std::string tool() {
     return (fs::read_symlink("/proc/self/exe").parent_path() / "talisman").string();
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return folder_ / name; }
 
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-  }
-  std::string read(const std::string& name) const {
-    std::ifstream in(folder_ / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  std::string read(const std::string& name) const { return folder_.read(name); }
 
   /// Runs "cd FOLDER && PREFIX talisman ARGUMENTS".
   Outcome run(const std::string& arguments, const std::string& prefix = "") const {
     return run_shell(prefix + " '" + tool() + "' " + arguments);
   }
   Outcome run_shell(const std::string& shell) const {
-    const std::string command = "cd '" + folder_.string() + "' && " + shell + " 2>&1";
+    const std::string command = "cd '" + folder_.path() + "' && " + shell + " 2>&1";
     std::FILE* pipe = popen(command.c_str(), "r");
     Outcome outcome;
     char buffer[4096];
@@ -86,17 +74,11 @@ class Tool : public ::testing::Test {
     for (const std::string& part : parts) EXPECT_THAT(outcome.output, HasSubstr(part)) << arguments;
   }
 
-  std::set<std::string> files_in(const std::string& name) const {
-    std::set<std::string> names;
-    if (fs::exists(folder_ / name))
-      for (const auto& entry : fs::directory_iterator(folder_ / name))
-        names.insert(entry.path().filename().string());
-    return names;
-  }
+  std::set<std::string> files_in(const std::string& name) const { return tests::names_in(folder_ / name); }
 
   std::vector<std::string> frame_hashes(const std::string& out) const {
     std::vector<std::string> hashes;
-    std::ifstream in(folder_ / out / "frames.jsonl");
+    std::ifstream in(folder_ / (out + "/frames.jsonl"));
     for (std::string line; std::getline(in, line);)
       hashes.push_back(nlohmann::json::parse(line)["frame_hash"]);
     return hashes;
@@ -106,7 +88,7 @@ class Tool : public ::testing::Test {
       "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
       "f 5 6 7 8\nf 2 1 4 3\nf 6 2 3 7\nf 1 5 8 4\nf 8 7 3 4\nf 1 2 6 5\n";
 
-  fs::path folder_;
+  tests::TemporaryFolder folder_;
 };
 
 TEST_F(Tool, RendersABareModel) {
@@ -347,7 +329,7 @@ TEST_F(Tool, AccuracyOfTheRegulatorOnABareModel) {
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("threshold"), HasSubstr("oracle"), HasSubstr("results in o")));
   for (const char* name :
        {"regulator.csv", "regulator.svg", "regulator.json", "lookahead.csv", "calibration.csv"})
-    EXPECT_TRUE(fs::exists(folder_ / "o" / name)) << name;
+    EXPECT_TRUE(fs::exists(folder_ / ("o/" + std::string(name)))) << name;
   expect_bad_input("accuracy --regulator nothing", {"nothing"});
   expect_bad_input("accuracy --regulator cube.obj --frames 5-2", {"--frames", "5-2"});
   expect_bad_input("accuracy --regulator cube.obj --size 0x9", {"--size", "0x9"});
@@ -380,6 +362,32 @@ TEST_F(Tool, InspectTellsTheOrderOverTime) {
   const Outcome unknown = run("plan cube.obj --compositor fancy");
   EXPECT_EQ(unknown.exit_code, 2);
   EXPECT_THAT(unknown.output, HasSubstr("--compositor is 'fancy', must be one of talisman, extended"));
+}
+
+TEST_F(Tool, AloneListsItsCommandsAndHasDoneNothing) {
+  const Outcome outcome = run("");
+  EXPECT_EQ(outcome.exit_code, 2);
+  for (const char* command : {"render", "plan", "inspect", "diff", "warps", "accuracy"})
+    EXPECT_THAT(outcome.output, HasSubstr(std::string("\n  ") + command + " ")) << command;
+}
+
+TEST_F(Tool, MisspeltCommandsAndOptionsAreAnsweredWithWhatIsNear) {
+  expect_bad_input("rendr cube.obj", {"'rendr' is no command; did you mean 'render'?"});
+  expect_bad_input("frobnicate", {"'frobnicate' is no command; must be one of render, plan, inspect"});
+  expect_bad_input("plan cube.obj --geometrc-px 3", {"--geometrc-px", "did you mean '--geometric-px'?"});
+  expect_bad_input("plan cube.obj --szie=64x48", {"--szie=64x48", "did you mean '--size'?"});
+  expect_bad_input("--versoin", {"'--versoin' is no option; did you mean '--version'?"});
+  expect_bad_input("plan cube.obj --xyzzy", {"not expected: --xyzzy\n"});
+  expect_bad_input("plan", {"sequence is required"});
+}
+
+TEST_F(Tool, VersionSaysWhatWasBuilt) {
+  const Outcome outcome = run("--version");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.output, testing::MatchesRegex("talisman [0-9]+\\.[0-9]+\\.[0-9]+\n"
+                                                    "commit: (unknown|[0-9a-f]{12}(-dirty)?)\n"
+                                                    "effects: (all|[0-9]+ of) [0-9]+.*\n"
+                                                    "simd: [A-Z0-9_]+\n"));
 }
 
 }  // namespace

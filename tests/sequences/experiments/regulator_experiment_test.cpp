@@ -11,7 +11,6 @@
 #include <gtest/gtest.h>
 
 #include "sequences/experiments/regulator/lookahead_curve.h"
-#include "sequences/experiments/regulator/report.h"
 #include "sequences/pictures/diff.h"
 #include "sequences/pipeline/step.h"
 #include "tests/support/sequences.h"
@@ -57,39 +56,6 @@ std::map<double, SettingResult> by_knob(const std::string& series) {
     if (result.setting.series == series) results.emplace(result.setting.value, result);
   return results;
 }
-
-// --- Which frames
-
-TEST(SampledFrames, OnePerStratumAndAllOfThemWhenEveryIsOne) {
-  for (const int every : {1, 2, 7, 12}) {
-    const std::vector<int> frames = sampled_frames({10, 109, every});
-    ASSERT_EQ(frames.size(), std::size_t(99 / every + 1)) << every;
-    for (std::size_t k = 0; k < frames.size(); ++k) {
-      EXPECT_EQ((frames[k] - 10) / every, int(k));
-      EXPECT_LE(frames[k], 109);
-    }
-  }
-}
-
-TEST(SampledFrames, MeetEveryPhaseOfEveryHoldAboutEquallyOften) {
-  // With a regular stride of 5, hold 5 would be seen at its renders only, and would look perfect. Twenty
-  // frames are what the tool draws by default.
-  for (const int every : {1, 2, 3, 4, 5, 6, 8, 10, 12, 13, 16})
-    for (const int hold : compared_holds()) {
-      std::vector<int> hits(hold, 0);
-      for (const int frame : sampled_frames({0, 20 * every - 1, every})) ++hits[frame % hold];
-      const auto [least, most] = std::minmax_element(hits.begin(), hits.end());
-      EXPECT_GE(*least, std::max(1, 20 / hold - 2)) << "every " << every << ", hold " << hold;
-      EXPECT_LE(*most, 20 / hold + 2) << "every " << every << ", hold " << hold;
-    }
-}
-
-TEST(SampledFrames, HaveAPredecessorWhereTheyCan) {
-  EXPECT_THAT(sampled_frames({0, 1, 2}), testing::ElementsAre(1));
-  EXPECT_THAT(sampled_frames({0, 0, 2}), testing::ElementsAre(0));
-}
-
-TEST(SampledFrames, OneFrameIsEnough) { EXPECT_THAT(sampled_frames({5, 5, 9}), testing::ElementsAre(5)); }
 
 // --- Which settings
 
@@ -264,22 +230,6 @@ TEST(LookaheadCurve, LiesBetweenThresholdAndOracle) {
   }
   EXPECT_EQ(curve.points[lookaheads - 1].renders, curve.oracle_renders)
       << "64 frames are more than the sequence has";
-}
-
-// --- Pareto
-
-TEST(ParetoFront, WhatIsBeatenIsNotOnIt) {
-  using testing::ElementsAre;
-  EXPECT_THAT(pareto_front({1, 2, 3, 4}, {9, 5, 6, 1}), ElementsAre(true, true, false, true));
-  EXPECT_THAT(pareto_front({4, 3, 2, 1}, {1, 6, 5, 9}), ElementsAre(true, false, true, true));
-}
-
-TEST(ParetoFront, TiesAndNotANumber) {
-  using testing::ElementsAre;
-  EXPECT_THAT(pareto_front({1, 1, 1}, {2, 1, 1}), ElementsAre(false, true, false));
-  EXPECT_THAT(pareto_front({1, 2}, {3, 3}), ElementsAre(true, false));
-  EXPECT_THAT(pareto_front({NAN, 1, 2}, {0, NAN, 5}), ElementsAre(false, false, true));
-  EXPECT_TRUE(pareto_front({}, {}).empty());
 }
 
 }  // namespace

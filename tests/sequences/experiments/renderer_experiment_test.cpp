@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sequences/experiments/renderer/measure.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
 #include "tests/support/scenes.h"

@@ -106,5 +106,36 @@ TEST(Quantile, EmptyAndNotFinite) {
   EXPECT_EQ(quantile(Values{NAN, 7, HUGE_VAL}, 0.5), 7);
 }
 
+TEST(ParetoFront, WhatIsBeatenIsNotOnIt) {
+  using testing::ElementsAre;
+  EXPECT_THAT(pareto_front({1, 2, 3, 4}, {9, 5, 6, 1}), ElementsAre(true, true, false, true));
+  EXPECT_THAT(pareto_front({4, 3, 2, 1}, {1, 6, 5, 9}), ElementsAre(true, false, true, true));
+}
+
+TEST(ParetoFront, TiesAndNotANumber) {
+  using testing::ElementsAre;
+  EXPECT_THAT(pareto_front({1, 1, 1}, {2, 1, 1}), ElementsAre(false, true, false));
+  EXPECT_THAT(pareto_front({1, 2}, {3, 3}), ElementsAre(true, false));
+  EXPECT_THAT(pareto_front({NAN, 1, 2}, {0, NAN, 5}), ElementsAre(false, false, true));
+  EXPECT_TRUE(pareto_front({}, {}).empty());
+}
+
+TEST(ParetoFront, SmallGainsCountForNothingWhereOneIsAskedFor) {
+  using testing::ElementsAre;
+  EXPECT_THAT(pareto_front({1, 2, 3}, {1, 0.95, 0.5}, 0.1), ElementsAre(true, false, true));
+  // Against the last that counted, not against the last that was looked at.
+  EXPECT_THAT(pareto_front({1, 2, 3}, {1, 0.95, 0.89}, 0.1), ElementsAre(true, false, true));
+}
+
+TEST(Median, OfAnEvenNumberLiesBetween) {
+  EXPECT_EQ(median(std::vector<double>{4, 1, 3, 2}), 2.5);
+  EXPECT_EQ(median(std::vector<double>{NAN, 7}), 7);
+}
+
+TEST(RmsCodeValues, IsWhatPsnrSays) {
+  EXPECT_NEAR(rms_code_values(20 * std::log10(255 / 3.0)), 3, 1e-12);
+  EXPECT_EQ(rms_code_values(HUGE_VAL), 0);
+}
+
 }  // namespace
 }  // namespace talisman::sequences

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/experiments/warps/solver_ladder.h"
 
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <set>
-#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/commands/accuracy.h"
 #include "sequences/experiments/warps/solver_measure.h"
 
 namespace talisman::sequences {
@@ -158,37 +152,6 @@ TEST(TimedSolver, TimesArePositiveAndTheTailIsNotBelowTheMedian) {
   timed.run_round();
   EXPECT_GT(timed.result().median_us, 0);
   EXPECT_GE(timed.result().p99_us, timed.result().median_us);
-}
-
-TEST(RunAccuracy, WithoutAnExperimentIsABadArgument) {
-  std::ostringstream out;
-  EXPECT_THROW(run_accuracy({}, out), InputError);
-  AccuracyOptions options;
-  options.solvers = true;
-  options.inputs = 0;
-  EXPECT_THROW(run_accuracy(options, out), InputError);
-}
-
-TEST(RunAccuracy, WritesOneLinePerSolverAndSizeAndThePlots) {
-  const std::filesystem::path dir =
-      std::filesystem::temp_directory_path() / ("ladder-" + std::to_string(::getpid()));
-  AccuracyOptions options;
-  options.solvers = true;
-  options.out = dir.string();
-  options.progress = "none";
-  options.inputs = 2;
-  std::ostringstream out;
-  EXPECT_EQ(run_accuracy(options, out), kSuccess);
-  std::ifstream csv(dir / "solvers.csv");
-  std::string line;
-  std::size_t lines = 0, front = 0;
-  while (std::getline(csv, line)) ++lines, front += line.ends_with(",1");
-  EXPECT_EQ(lines, 1 + 5 * solver_ladder().size());
-  EXPECT_GE(front, 2u);
-  for (const char* name : {"solvers.svg", "solvers-affine.svg", "solvers-perspective.svg"})
-    EXPECT_GT(std::filesystem::file_size(dir / name), 1000u) << name;
-  EXPECT_THAT(out.str(), testing::HasSubstr("normal eq. float32"));
-  std::filesystem::remove_all(dir);
 }
 
 }  // namespace

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/experiments/warps/update_rate.h"
 
-#include <unistd.h>
-
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <map>
 #include <optional>
 
@@ -17,6 +13,7 @@
 #include "sequences/experiments/warps/objects.h"
 #include "sequences/experiments/warps/quality.h"
 #include "sequences/experiments/warps/ranking.h"
+#include "tests/sequences/temporary_folder.h"
 #include "warp/quadrilateral.h"
 
 namespace talisman::sequences {
@@ -326,17 +323,6 @@ TEST(WarpObjects, EveryMotionIsASoundScene) {
     EXPECT_EQ(layers::first_defect(stage(object("box"), motion)), "") << motion.name;
 }
 
-struct Folder {
-  std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("warps-" + std::to_string(::getpid()));
-  Folder() { std::filesystem::create_directories(path); }
-  ~Folder() { std::filesystem::remove_all(path); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path / name) << text;
-    return (path / name).string();
-  }
-};
-
 /// Sixteen points of a square in the plane z = 0.
 std::string flat_patch() {
   std::string text;
@@ -346,7 +332,7 @@ std::string flat_patch() {
 }
 
 TEST(ReadBezierPatches, EvenlySpacedControlPointsGiveAPlane) {
-  const Folder folder;
+  const tests::TemporaryFolder folder;
   const layers::Mesh mesh =
       read_bezier_patches(folder.write("a.bez", "BBP\n" + flat_patch() + flat_patch()), 3);
   EXPECT_EQ(mesh.positions.size(), 32u);
@@ -361,7 +347,7 @@ TEST(ReadBezierPatches, EvenlySpacedControlPointsGiveAPlane) {
 }
 
 TEST(ReadBezierPatches, BadFilesAreRefusedInWords) {
-  const Folder folder;
+  const tests::TemporaryFolder folder;
   const std::pair<std::string, std::string> cases[] = {{"", "cannot be read"},
                                                        {"BBBB\n" + flat_patch(), "BBBB"},
                                                        {"BBP\n", "0 coordinates"},
@@ -396,8 +382,8 @@ class AssetsFolder {
 };
 
 TEST(LoadWarpObject, MissingContentNamesTheCommandAndTheRestIsThere) {
-  const Folder folder;
-  const AssetsFolder assets(folder.path.string());
+  const tests::TemporaryFolder folder;
+  const AssetsFolder assets(folder.path());
   std::vector<MissingObject> missing;
   std::vector<std::string> names;
   for (const WarpObject& there : load_warp_objects(missing)) names.push_back(there.name);
@@ -409,10 +395,9 @@ TEST(LoadWarpObject, MissingContentNamesTheCommandAndTheRestIsThere) {
 }
 
 TEST(LoadWarpObject, EveryPackageIsInTheListThatIsFetched) {
-  std::ifstream in(TALISMAN_SOURCE_DIR "/sequences/warps/packages");
-  const std::string listed((std::istreambuf_iterator<char>(in)), {});
-  const Folder empty;
-  const AssetsFolder assets(empty.path.string());
+  const std::string listed = tests::content(TALISMAN_SOURCE_DIR "/sequences/warps/packages");
+  const tests::TemporaryFolder empty;
+  const AssetsFolder assets(empty.path());
   std::vector<MissingObject> missing;
   load_warp_objects(missing);
   ASSERT_FALSE(missing.empty());

@@ -20,6 +20,7 @@
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/child_process.h"
 #include "sequences/files/video.h"
+#include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
 namespace {
@@ -27,29 +28,8 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-class Folder {
- public:
-  Folder() {
-    std::string pattern = (fs::temp_directory_path() / "talisman-io-XXXXXX").string();
-    path_ = ::mkdtemp(pattern.data());
-  }
-  ~Folder() { fs::remove_all(path_); }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
-  std::string str() const { return path_.string(); }
-  std::set<std::string> names() const {
-    std::set<std::string> result;
-    for (const auto& entry : fs::directory_iterator(path_)) result.insert(entry.path().filename().string());
-    return result;
-  }
-
- private:
-  fs::path path_;
-};
-
-std::string content_of(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
+using Folder = tests::TemporaryFolder;
+using tests::content;
 
 Image8 gradient(int width, int height) {
   Image8 image{width, height, {}};
@@ -104,7 +84,7 @@ TEST(WriteAtomically, TextComesOutAndNoTemporaryStays) {
   const Folder folder;
   write_text_atomically(folder / "a.txt", std::string("one\0two", 7));
   write_text_atomically(folder / "a.txt", "three");
-  EXPECT_EQ(content_of(folder / "a.txt"), "three");
+  EXPECT_EQ(content(folder / "a.txt"), "three");
   EXPECT_EQ(folder.names(), (std::set<std::string>{"a.txt"}));
 }
 
@@ -127,7 +107,7 @@ TEST(WriteAtomically, FullDiskKeepsTheOldFileAndSaysWhy) {
   }
   EXPECT_THAT(message, HasSubstr(folder / "a.txt"));
   EXPECT_THAT(message, HasSubstr("File too large"));
-  EXPECT_EQ(content_of(folder / "a.txt"), "old");
+  EXPECT_EQ(content(folder / "a.txt"), "old");
   EXPECT_EQ(folder.names(), (std::set<std::string>{"a.txt"}));
 }
 
@@ -197,9 +177,9 @@ TEST(WriteAtomically, TemporaryIsUniqueAndInTheSameFolder) {
     std::ofstream(outer) << "outer";
   });
   EXPECT_NE(first, second);
-  EXPECT_EQ(fs::path(first).parent_path(), folder.str());
+  EXPECT_EQ(fs::path(first).parent_path(), folder.path());
   EXPECT_EQ(fs::path(first).extension(), ".png");
-  EXPECT_EQ(content_of(folder / "a.png"), "outer");
+  EXPECT_EQ(content(folder / "a.png"), "outer");
 }
 
 TEST(WritePng, RoundTripIsExact) {
@@ -224,10 +204,10 @@ TEST(WriteImage, SameBytesInAnotherSecond) {
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   write_png(folder / "b.png", gradient(50, 40));
   write_exr(folder / "b.exr", level_frame());
-  EXPECT_EQ(content_of(folder / "a.png"), content_of(folder / "b.png"));
-  EXPECT_FALSE(content_of(folder / "a.png").empty());
-  EXPECT_EQ(content_of(folder / "a.exr"), content_of(folder / "b.exr"));
-  EXPECT_FALSE(content_of(folder / "a.exr").empty());
+  EXPECT_EQ(content(folder / "a.png"), content(folder / "b.png"));
+  EXPECT_FALSE(content(folder / "a.png").empty());
+  EXPECT_EQ(content(folder / "a.exr"), content(folder / "b.exr"));
+  EXPECT_FALSE(content(folder / "a.exr").empty());
 }
 
 // Half floats have 11 bits; the light that comes back may differ by half a unit of the last of them.
@@ -293,14 +273,14 @@ TEST(ReadImage, WhatCannotBeReadIsNamed) {
   EXPECT_THAT(missing, HasSubstr(folder / "none.png"));
   write_text_atomically(folder / "text.png", "this is no picture");
   EXPECT_THROW(read_image(folder / "text.png"), InputError);
-  EXPECT_THROW(read_image(folder.str()), InputError);
+  EXPECT_THROW(read_image(folder.path()), InputError);
 }
 
 // A file that was cut off must not come back as a picture with a black rest.
 TEST(ReadImage, TruncatedFileIsAnError) {
   const Folder folder;
   write_png(folder / "whole.png", gradient(200, 200));
-  const std::string whole = content_of(folder / "whole.png");
+  const std::string whole = content(folder / "whole.png");
   write_text_atomically(folder / "half.png", whole.substr(0, whole.size() / 2));
   EXPECT_THROW(read_image(folder / "half.png"), InputError);
 }
@@ -385,7 +365,7 @@ TEST(WriteVideo, ColorsSurvive) {
   const Folder folder;
   fs::create_directories(folder / "frames");
   write_png(folder / "frames/0000.png", flat(65, 47, {200, 60, 30}));
-  write_video(folder.str(), 24, FrameFormat::Png, 0);
+  write_video(folder.path(), 24, FrameFormat::Png, 0);
   const Image8 back = first_video_frame(folder);
   ASSERT_EQ(back.width, 66);
   for (const int at :
@@ -404,7 +384,7 @@ TEST(WriteVideo, ExrFramesAreEncodedToSrgb) {
   const chunker::Frame frame{64, 48, std::vector<chunker::Linear16>(64 * 48, color)};
   write_exr(folder / "frames/0003.exr", frame);
   write_exr(folder / "frames/0004.exr", frame);
-  write_video(folder.str(), 30, FrameFormat::Exr, 3);
+  write_video(folder.path(), 30, FrameFormat::Exr, 3);
   EXPECT_EQ(probe(folder / "video.mp4").frames, 2);
   const Image8 want = to_image8(frame), back = first_video_frame(folder);
   for (int c = 0; c < 3; ++c) EXPECT_NEAR(back.rgb[c], want.rgb[c], 6) << "channel " << c;
@@ -415,26 +395,26 @@ TEST(WriteVideo, LastFrameEndsTheVideoAndAGapIsNamed) {
   fs::create_directories(folder / "frames");
   for (const char* name : {"0000", "0001", "0002", "0004"})
     write_png(folder / ("frames/" + std::string(name) + ".png"), flat(32, 32, {9, 9, 9}));
-  write_video(folder.str(), 24, FrameFormat::Png, 0, 1);
+  write_video(folder.path(), 24, FrameFormat::Png, 0, 1);
   EXPECT_EQ(probe(folder / "video.mp4").frames, 2);
   const std::string gap =
-      message_of<OutputError>([&] { write_video(folder.str(), 24, FrameFormat::Png, 0, 4); });
+      message_of<OutputError>([&] { write_video(folder.path(), 24, FrameFormat::Png, 0, 4); });
   EXPECT_THAT(gap, HasSubstr("0003.png"));
 }
 
 TEST(WriteVideo, FailuresNameFileAndReasonAndLeaveNothing) {
   const Folder folder;
-  EXPECT_THAT(message_of<OutputError>([&] { write_video(folder.str(), 24, FrameFormat::Png, 7); }),
+  EXPECT_THAT(message_of<OutputError>([&] { write_video(folder.path(), 24, FrameFormat::Png, 7); }),
               HasSubstr("0007.png"));
-  EXPECT_THROW(write_video(folder.str(), 24, FrameFormat::None, 0), OutputError);
+  EXPECT_THROW(write_video(folder.path(), 24, FrameFormat::None, 0), OutputError);
   fs::create_directories(folder / "frames");
   write_png(folder / "frames/0000.png", flat(32, 32, {1, 2, 3}));
-  EXPECT_THROW(write_video(folder.str(), 0, FrameFormat::Png, 0), OutputError);
-  EXPECT_THROW(write_video(folder.str(), NAN, FrameFormat::Png, 0), OutputError);
+  EXPECT_THROW(write_video(folder.path(), 0, FrameFormat::Png, 0), OutputError);
+  EXPECT_THROW(write_video(folder.path(), NAN, FrameFormat::Png, 0), OutputError);
   std::string full;
   {
     const FileSizeLimit limit(64);  // the child inherits the limit
-    full = message_of<OutputError>([&] { write_video(folder.str(), 24, FrameFormat::Png, 0); });
+    full = message_of<OutputError>([&] { write_video(folder.path(), 24, FrameFormat::Png, 0); });
   }
   EXPECT_THAT(full, HasSubstr("video.mp4: ffmpeg failed: "));
   EXPECT_EQ(folder.names(), (std::set<std::string>{"frames"}));

@@ -12,6 +12,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "tests/sequences/temporary_folder.h"
+
 namespace talisman::sequences {
 namespace {
 
@@ -29,24 +31,16 @@ Image8 shade(int value, int width = 24, int height = 16) {
 class DiffTest : public testing::Test {
  protected:
   DiffTest() {
-    std::string pattern = (fs::temp_directory_path() / "talisman-diff-XXXXXX").string();
-    root_ = ::mkdtemp(pattern.data());
-    for (const char* name : {"a", "b"}) fs::create_directory(root_ / name);
+    for (const char* name : {"a", "b"}) fs::create_directory(path(name));
     options_.a = path("a"), options_.b = path("b");
   }
-  ~DiffTest() override { fs::remove_all(root_); }
-  std::string path(const std::string& name) const { return (root_ / name).string(); }
+  std::string path(const std::string& name) const { return root_ / name; }
   void put(const std::string& name, const Image8& image) const { write_png(path(name), image); }
   std::string refusal() const {
     std::ostringstream out;
-    try {
-      run_diff(options_, out);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "nothing was thrown";
+    return tests::message_of([&] { run_diff(options_, out); });
   }
-  fs::path root_;
+  tests::TemporaryFolder root_;
   DiffOptions options_;
 };
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/pictures/page.h"
 
-#include <unistd.h>
-
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
 namespace {
@@ -40,21 +38,18 @@ TEST(Html, TextCannotBecomeMarkup) {
 
 TEST(Html, FiguresAreInsideAndKeepTheirOwnIds) {
   // Two pictures with the same identifier: references of each must find its own.
-  const std::filesystem::path dir =
-      std::filesystem::temp_directory_path() / ("page-" + std::to_string(::getpid()));
-  std::filesystem::create_directories(dir);
+  const tests::TemporaryFolder folder;
   for (const char* name : {"a.svg", "b.svg"})
-    std::ofstream(dir / name)
-        << "<?xml version=\"1.0\"?>\n<svg><g id=\"p\"/><use href=\"#p\"/><use xlink:href='#p'/></svg>";
+    folder.write(name,
+                 "<?xml version=\"1.0\"?>\n<svg><g id=\"p\"/><use href=\"#p\"/><use xlink:href='#p'/></svg>");
   Page page;
   page.blocks = {Figure{"a.svg", "first"}, Figure{"b.svg", "second"}};
-  const std::string text = html(page, dir.string());
+  const std::string text = html(page, folder.path());
   EXPECT_THAT(text, HasSubstr("<g id=\"f1-p\"/><use href=\"#f1-p\"/><use xlink:href='#f1-p'/>"));
   EXPECT_THAT(text, HasSubstr("<g id=\"f2-p\"/>"));
   EXPECT_THAT(text, Not(HasSubstr("<?xml")));
   page.blocks.push_back(Figure{"missing.svg", ""});
-  EXPECT_THROW(html(page, dir.string()), OutputError);
-  std::filesystem::remove_all(dir);
+  EXPECT_THROW(html(page, folder.path()), OutputError);
 }
 
 TEST(PlainText, ColumnsLineUpByCodePoints) {

@@ -5,12 +5,12 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
-#include <functional>
-#include <iterator>
 #include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
 namespace {
@@ -21,19 +21,10 @@ using testing::Not;
 
 class PlotFilesTest : public testing::Test {
  protected:
-  PlotFilesTest() {
-    std::string pattern = (fs::temp_directory_path() / "talisman-plot-XXXXXX").string();
-    dir_ = ::mkdtemp(pattern.data());
-  }
-  ~PlotFilesTest() override { fs::remove_all(dir_); }
-  std::string content(const std::string& name) const {
-    std::ifstream in(fs::path(dir_) / name, std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(dir_), fs::directory_iterator()));
-  }
-  std::string dir_;
+  std::string content(const std::string& name) const { return folder_.read(name); }
+  std::size_t files() const { return folder_.names().size(); }
+  tests::TemporaryFolder folder_;
+  const std::string dir_ = folder_.path();
 };
 
 Plot sample() {
@@ -42,15 +33,6 @@ Plot sample() {
           {"update rate", "%", false},
           {{"aff_i", {{0.5, 90}, {1, 60.1}, {4, 1.0 / 3}}, SeriesStyle::LinePoints},
            {"hold", {{0.5, 20}, {4, 20}}, SeriesStyle::Line}}};
-}
-
-std::string message_of(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const OutputError& error) {
-    return error.what();
-  }
-  return "nothing was thrown";
 }
 
 // The shortest digits that read back as the same double: 1/3 in full, 0.5 as it is.
@@ -154,7 +136,7 @@ TEST_F(PlotFilesTest, MoreSeriesThanColors) {
 }
 
 TEST_F(PlotFilesTest, FolderThatCannotBeWrittenIsNamed) {
-  const std::string message = message_of([&] { write_plot(dir_ + "/none", "rate", sample()); });
+  const std::string message = tests::message_of([&] { write_plot(dir_ + "/none", "rate", sample()); });
   EXPECT_THAT(message, HasSubstr("none/rate.csv"));
 }
 
@@ -166,9 +148,9 @@ TEST_F(PlotFilesTest, FailingGnuplotIsReported) {
   std::ofstream(fake) << "#!/bin/sh\necho half a picture\necho 'terminal type svg is unknown' >&2\nexit 3\n";
   fs::permissions(fake, fs::perms::owner_all);
   ::setenv("PATH", (fake.parent_path().string() + ":" + path).c_str(), 1);
-  const std::string failing = message_of([&] { write_plot(dir_, "rate", sample()); });
+  const std::string failing = tests::message_of([&] { write_plot(dir_, "rate", sample()); });
   ::setenv("PATH", (dir_ + "/nothing-here").c_str(), 1);
-  const std::string missing = message_of([&] { write_plot(dir_, "rate", sample()); });
+  const std::string missing = tests::message_of([&] { write_plot(dir_, "rate", sample()); });
   ::setenv("PATH", path.c_str(), 1);
   EXPECT_THAT(failing, HasSubstr("rate.svg: gnuplot failed: terminal type svg is unknown"));
   EXPECT_THAT(missing, HasSubstr("No such file"));

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -14,11 +13,10 @@
 #include <opencv2/imgproc.hpp>
 
 #include "sequences/files/child_process.h"
+#include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
 namespace {
-
-namespace fs = std::filesystem;
 
 Image8 flat(int width, int height, std::array<std::uint8_t, 3> color) {
   Image8 image{width, height, {}};
@@ -445,13 +443,11 @@ TEST(Compare, WhatIsNotAskedForIsNotComputed) {
 
 /// What ffmpeg's filter says of two pictures: the number after `key` in its summary line.
 double ffmpeg_says(const std::string& filter, const std::string& key, const Image8& a, const Image8& b) {
-  std::string folder = (fs::temp_directory_path() / "talisman-quality-XXXXXX").string();
-  if (!::mkdtemp(folder.data())) return NAN;
-  write_png(folder + "/a.png", a);
-  write_png(folder + "/b.png", b);
-  const ChildResult child = run_child({"ffmpeg", "-hide_banner", "-nostdin", "-i", folder + "/a.png", "-i",
-                                       folder + "/b.png", "-lavfi", filter, "-f", "null", "-"});
-  fs::remove_all(folder);
+  const tests::TemporaryFolder folder;
+  write_png(folder / "a.png", a);
+  write_png(folder / "b.png", b);
+  const ChildResult child = run_child({"ffmpeg", "-hide_banner", "-nostdin", "-i", folder / "a.png", "-i",
+                                       folder / "b.png", "-lavfi", filter, "-f", "null", "-"});
   const auto at = child.output.rfind(key);
   return at == std::string::npos ? NAN : std::atof(child.output.c_str() + at + key.size());
 }

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/results/frame_lines.h"
-#include "tests/sequences/stage.h"
+#include "tests/sequences/small_run.h"
 #include "tests/support/fleet.h"
 
 namespace talisman::sequences {
@@ -33,12 +33,12 @@ std::vector<RegulatorOptions> bounded_policies() {
 }
 
 /// The unit cube, 4 m in front of the camera, on a track of 2 s.
-Stage cube_on(const layers::TransformTrack& track, const RegulatorOptions& options) {
+SmallRun cube_on(const layers::TransformTrack& track, const RegulatorOptions& options) {
   layers::Scene scene = tests::cube_scene();
   scene.tracks.push_back({scene.parts[0].node, track});
-  Stage stage(std::move(scene));
-  stage.settings.regulator = options;
-  return stage;
+  SmallRun small(std::move(scene));
+  small.settings.regulator = options;
+  return small;
 }
 
 layers::TransformTrack moved_through(std::vector<dvec3> places, Interpolation interpolation) {
@@ -111,25 +111,25 @@ TEST(HardMotion, FlatLayerThatTurnsEdgeOn) {
   turn.rotation = {{0, 2}, {{1, 0, 0, 0}, glm::angleAxis(3.0, dvec3(0, 1, 0))}, Interpolation::Linear};
   scene.tracks.push_back({scene.parts[0].node, turn});
   for (const RegulatorOptions& options : bounded_policies()) {
-    Stage stage(scene);
-    stage.settings.regulator = options;
-    for (const FrameReport& report : stage.run(48, false))
+    SmallRun small(scene);
+    small.settings.regulator = options;
+    for (const FrameReport& report : small.run(48, false))
       EXPECT_LE(report.plan.decisions[0].shown_geometric_px, kBound_px) << report.frame;
   }
 }
 
-Stage fleet(int layers, unsigned seed, const RegulatorOptions& options) {
-  Stage stage(tests::fleet_scene(layers, seed));
-  stage.settings.fps = 32;
-  stage.settings.regulator = options;
-  return stage;
+SmallRun fleet(int layers, unsigned seed, const RegulatorOptions& options) {
+  SmallRun small(tests::fleet_scene(layers, seed));
+  small.settings.fps = 32;
+  small.settings.regulator = options;
+  return small;
 }
 
 TEST(HardMotion, FrameThatIsRepeatedIsReusedUnchanged) {
   for (const RegulatorOptions& options : bounded_policies()) {
-    Stage stage = fleet(5, 4, options);
-    stage.settings.frames = 40;
-    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
+    SmallRun small = fleet(5, 4, options);
+    small.settings.frames = 40;
+    const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
     PipelineState state(pipeline);
     for (int frame = 0; frame < 40; ++frame) {
       const FrameReport once = step(pipeline, state, frame, nullptr),
@@ -148,8 +148,8 @@ TEST(HardMotion, FrameThatIsRepeatedIsReusedUnchanged) {
 TEST(HardMotion, StepsMayRunBackwardsWithoutLosingTheBoundOrGrowing) {
   RegulatorOptions options;
   options.geometric_px = kBound_px;
-  const Stage stage = fleet(5, 4, options);
-  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
+  const SmallRun small = fleet(5, 4, options);
+  const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
   PipelineState state(pipeline);
   int reuses = 0;
   for (int frame = 100; frame >= 0; --frame) {
@@ -170,7 +170,7 @@ TEST(HardMotion, ReversedMotionNeedsAsManyRendersOfTheOracle) {
   RegulatorOptions oracle;
   oracle.policy = Policy::Oracle;
   oracle.geometric_px = 1;
-  Stage forward = fleet(5, 4, oracle), backward = forward;
+  SmallRun forward = fleet(5, 4, oracle), backward = forward;
   backward.scene = tests::reversed_fleet_scene(5, 4);
   const int there = count(forward.run(129, false), Action::Rerender);
   const int back = count(backward.run(129, false), Action::Rerender);
@@ -184,14 +184,14 @@ TEST(HardMotion, OptionsMayChangeOnTheWay) {
   budget.policy = Policy::Budget;
   budget.budget_pixels = 150;
   options.insert(options.begin(), budget);
-  Stage stage = fleet(5, 4, budget);
-  stage.settings.frames = 60;
-  PipelineState state(make_pipeline(stage.scene, stage.layers, stage.settings));
-  const chunker::PreparedScene prepared(stage.scene);
+  SmallRun small = fleet(5, 4, budget);
+  small.settings.frames = 60;
+  PipelineState state(make_pipeline(small.scene, small.layers, small.settings));
+  const chunker::PreparedScene prepared(small.scene);
   int coarse = 0;
   for (int frame = 0; frame < 60; ++frame) {
-    stage.settings.regulator = options[frame / 12];
-    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
+    small.settings.regulator = options[frame / 12];
+    const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
     const FrameReport report = step(pipeline, state, frame, frame % 6 == 5 ? &prepared : nullptr);
     for (const regulator::LayerDecision& d : report.plan.decisions) {
       coarse += frame < 12 && d.resolution < 0.7;
@@ -206,12 +206,12 @@ TEST(HardMotion, OptionsMayChangeOnTheWay) {
 TEST(HardMotion, OptionsThatChangeAndComeBackDoNotChangeTheFrame) {
   RegulatorOptions options;
   options.geometric_px = 1;
-  Stage stage = fleet(5, 4, options);
-  const auto plain = stage.run(24, false);
-  PipelineState state(make_pipeline(stage.scene, stage.layers, stage.settings));
+  SmallRun small = fleet(5, 4, options);
+  const auto plain = small.run(24, false);
+  PipelineState state(make_pipeline(small.scene, small.layers, small.settings));
   for (int frame = 0; frame < 24; ++frame) {
     // Frames from afar are captured under other options in between.
-    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
+    const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
     const FrameReport report = step(pipeline, state, frame, nullptr);
     for (std::size_t i = 0; i < 5; ++i)
       EXPECT_EQ(json_of(report, report.plan.decisions[i]),
@@ -225,10 +225,10 @@ TEST(HardMotion, TenThousandFramesOfALoopNeitherDriftNorGrow) {
   // A period of 32 frames of dyadic length: states repeat to the bit, so each layer's plan must become
   // periodic, in a multiple of the period in which its renders fit.
   constexpr int kPeriod = 32, kLong = 10'000, kMostPeriods = 24;
-  Stage stage(tests::fleet_scene(3, 6, 1.0));
-  stage.settings.fps = kPeriod;
-  stage.settings.regulator.geometric_px = kBound_px;
-  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
+  SmallRun small(tests::fleet_scene(3, 6, 1.0));
+  small.settings.fps = kPeriod;
+  small.settings.regulator.geometric_px = kBound_px;
+  const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
   PipelineState state(pipeline);
   struct Line {
     Action action;

@@ -7,7 +7,7 @@
 #include "regulator/policies.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/results/frame_lines.h"
-#include "tests/sequences/stage.h"
+#include "tests/sequences/small_run.h"
 #include "tests/support/fleet.h"
 
 namespace talisman::sequences {
@@ -21,12 +21,12 @@ using regulator::RegulatorOptions;
 constexpr unsigned kSeeds[] = {1, 2, 3};
 constexpr int kFrames = 64;
 
-Stage fleet(int layers, unsigned seed, const RegulatorOptions& options) {
-  Stage stage(tests::fleet_scene(layers, seed));
-  stage.settings.view.display_px = {320, 240};
-  stage.settings.fps = 32;
-  stage.settings.regulator = options;
-  return stage;
+SmallRun fleet(int layers, unsigned seed, const RegulatorOptions& options) {
+  SmallRun small(tests::fleet_scene(layers, seed));
+  small.settings.view.display_px = {320, 240};
+  small.settings.fps = 32;
+  small.settings.regulator = options;
+  return small;
 }
 
 RegulatorOptions within(std::int64_t polygons, std::int64_t pixels, std::int64_t chunks = kNoLimit,
@@ -141,11 +141,11 @@ TEST(PlanBudget, ResolutionChangesByATenthFromRenderToRenderUnlessItHadToWait) {
 TEST(PlanBudget, LayerDearerThanAllPixelsIsDrawnInTheEndWithoutSpendingMore) {
   // One ship alone, first seen under an ample budget; then the budget is a fifth of what it takes.
   RegulatorOptions ample = within(kNoLimit, 1'000'000), scarce = within(kNoLimit, 150);
-  const Stage stage = fleet(1, 5, ample);
-  Settings settings = stage.settings;
-  const Pipeline rich = make_pipeline(stage.scene, stage.layers, settings);
+  const SmallRun small = fleet(1, 5, ample);
+  Settings settings = small.settings;
+  const Pipeline rich = make_pipeline(small.scene, small.layers, settings);
   settings.regulator = scarce;
-  const Pipeline poor = make_pipeline(stage.scene, stage.layers, settings);
+  const Pipeline poor = make_pipeline(small.scene, small.layers, settings);
   PipelineState state(rich);
   ASSERT_GT(step(rich, state, 0, nullptr).plan.decisions[0].cost.pixels, 750);
   int first_render = -1;
@@ -162,12 +162,12 @@ TEST(PlanBudget, LayerDearerThanAllPixelsIsDrawnInTheEndWithoutSpendingMore) {
 }
 
 TEST(PlanBudget, SceneAtRestIsSharpenedUntilNothingIsLeftToGain) {
-  Stage stage(tests::cube_scene());
-  stage.settings.view.display_px = {320, 240};
-  stage.settings.regulator = within(kNoLimit, 2000);  // the cube takes about 5500 at full resolution
-  const Pipeline poor = make_pipeline(stage.scene, stage.layers, stage.settings);
-  stage.settings.regulator = within(kNoLimit, 100'000);
-  const Pipeline rich = make_pipeline(stage.scene, stage.layers, stage.settings);
+  SmallRun small(tests::cube_scene());
+  small.settings.view.display_px = {320, 240};
+  small.settings.regulator = within(kNoLimit, 2000);  // the cube takes about 5500 at full resolution
+  const Pipeline poor = make_pipeline(small.scene, small.layers, small.settings);
+  small.settings.regulator = within(kNoLimit, 100'000);
+  const Pipeline rich = make_pipeline(small.scene, small.layers, small.settings);
   PipelineState state(poor);
   const double coarse = step(poor, state, 0, nullptr).plan.decisions[0].resolution;
   EXPECT_LT(coarse, 0.7);
@@ -184,11 +184,11 @@ TEST(PlanBudget, SceneAtRestIsSharpenedUntilNothingIsLeftToGain) {
 }
 
 TEST(PlanBudget, GapIsReportedOnlyWhenAskedForAndChangesNoDecision) {
-  Stage stage = fleet(12, 3, within(48, 2000));
-  const auto plain = stage.run(24, false);
-  stage.settings.budget_gap = true;
-  const auto with_gap = stage.run(24, false);
-  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
+  SmallRun small = fleet(12, 3, within(48, 2000));
+  const auto plain = small.run(24, false);
+  small.settings.budget_gap = true;
+  const auto with_gap = small.run(24, false);
+  const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
   double most = 0;
   for (int frame = 0; frame < 24; ++frame) {
     EXPECT_FALSE(plain[frame].budget_gap.has_value());
@@ -257,11 +257,11 @@ TEST(PlanOracle, EqualsEveryWayToCutATinySequence) {
   constexpr int kTiny = 11;
   int compared = 0;
   for (const unsigned seed : {7u, 8u, 9u}) {
-    Stage stage = fleet(3, seed, bounded(Policy::Oracle, 1));
-    stage.settings.fps = 8;  // fast, so that there is something to choose
-    stage.settings.frames = kTiny;
-    const auto reports = stage.run(kTiny, false);
-    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
+    SmallRun small = fleet(3, seed, bounded(Policy::Oracle, 1));
+    small.settings.fps = 8;  // fast, so that there is something to choose
+    small.settings.frames = kTiny;
+    const auto reports = small.run(kTiny, false);
+    const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
     PipelineState state(pipeline);
     for (int layer = 0; layer < 3; ++layer) {
       bool always_in_view = true;
@@ -278,7 +278,7 @@ TEST(PlanOracle, EqualsEveryWayToCutATinySequence) {
                              assess_sprite(pipeline, state.layers, captured_states(pipeline, state, r)[layer],
                                            captured_placement(pipeline, state, layer, r),
                                            captured_states(pipeline, state, f)[layer], 0),
-                             stage.settings.regulator)
+                             small.settings.regulator)
                              .empty();
       EXPECT_EQ(renders, fewest_by_force(serves)) << "seed " << seed << " layer " << layer;
       compared += renders > 1 && renders < kTiny;
@@ -319,20 +319,20 @@ TEST(PlanPredicted, ConstantMotionIsForeseenAsIfItWereKnown) {
   glide.rotation = {{0, 3}, {level, turned}, layers::Interpolation::Linear};
   scene.tracks.push_back({scene.parts[0].node, glide});
   const auto renders = [&](regulator::Prediction predict) {
-    Stage stage(scene);
-    stage.settings.regulator = bounded(Policy::Lookahead, 0.5, 12, predict);
-    return count(stage.run(72, false), Action::Rerender);
+    SmallRun small(scene);
+    small.settings.regulator = bounded(Policy::Lookahead, 0.5, 12, predict);
+    return count(small.run(72, false), Action::Rerender);
   };
   // In frame 0 no velocity is known yet, so the first sprite is drawn as of then.
   EXPECT_NEAR(renders(regulator::Prediction::Linear), renders(regulator::Prediction::Known), 1);
 }
 
 TEST(PlanPredicted, SpriteOfAnExpectedInstantIsTheSameDrawnAtOnceOrLate) {
-  Stage stage = fleet(4, 2, bounded(Policy::Lookahead, 1, 6, regulator::Prediction::Linear));
-  stage.settings.frames = 20;
-  const auto at_once = stage.run(20, true);
-  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
-  const chunker::PreparedScene prepared(stage.scene);
+  SmallRun small = fleet(4, 2, bounded(Policy::Lookahead, 1, 6, regulator::Prediction::Linear));
+  small.settings.frames = 20;
+  const auto at_once = small.run(20, true);
+  const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
+  const chunker::PreparedScene prepared(small.scene);
   PipelineState state(pipeline);
   int late = 0;
   for (int frame = 0; frame < 20; ++frame) {

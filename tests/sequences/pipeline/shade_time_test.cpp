@@ -55,7 +55,7 @@ void expect_sound(const Room& room) {
     const Show show = run(room, policy, 8, true);
     for (const FrameReport& report : show.reports) expect_finite(report);
   }
-  RegulatorCommandOptions options;
+  ExperimentOptions options;
   options.quality_every = 4;
   options.progress = "none";
   const PredictionCheck frame = measure_factoring_report(tests::sequence_of(room, 8), options).result.frame;

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/results/frame_lines.h"
-#include "tests/sequences/stage.h"
+#include "tests/sequences/small_run.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {
@@ -41,47 +41,47 @@ TEST(Step, ThresholdZeroEqualsReferenceByteForByte) {
   // scene rests in full.
   for (const layers::Scene& scene :
        {tests::moving_scene(), tests::cube_scene(), tests::skinned_bar_scene()}) {
-    const auto zero = Stage(scene).policy(Policy::Threshold, 0).run(kFrames, true);
-    const auto reference = Stage(scene).policy(Policy::Reference).run(kFrames, true);
+    const auto zero = SmallRun(scene).policy(Policy::Threshold, 0).run(kFrames, true);
+    const auto reference = SmallRun(scene).policy(Policy::Reference).run(kFrames, true);
     EXPECT_EQ(hashes_of(zero), hashes_of(reference));
   }
 }
 
 TEST(Step, SceneAtRestIsRenderedOnceAtThresholdZero) {
-  const auto reports = Stage(tests::cube_scene()).policy(Policy::Threshold, 0).run(kFrames, true);
+  const auto reports = SmallRun(tests::cube_scene()).policy(Policy::Threshold, 0).run(kFrames, true);
   EXPECT_EQ(count(reports, Action::Rerender), 1);
   EXPECT_EQ(count(reports, Action::Reuse), kFrames - 1);
 }
 
 /// The policies that use the fiducials, each so tight that it renders and reuses on moving_scene.
-std::vector<Stage> fiducial_policies() {
-  std::vector<Stage> stages;
+std::vector<SmallRun> fiducial_policies() {
+  std::vector<SmallRun> runs;
   for (const Policy policy : {Policy::Threshold, Policy::Budget, Policy::Lookahead, Policy::Oracle}) {
-    stages.push_back(Stage(tests::moving_scene()).policy(policy, 2).lookahead(6));
-    stages.back().settings.regulator.budget_pixels = 12'000;
-    stages.back().settings.frames = kFrames;
+    runs.push_back(SmallRun(tests::moving_scene()).policy(policy, 2).lookahead(6));
+    runs.back().settings.regulator.budget_pixels = 12'000;
+    runs.back().settings.frames = kFrames;
   }
-  return stages;
+  return runs;
 }
 
 TEST(Step, PlanWithoutPixelsMakesTheSameDecisions) {
-  for (const Stage& stage : fiducial_policies()) {
-    SCOPED_TRACE(std::string(regulator::name(stage.settings.regulator.policy)));
-    const auto planned = stage.run(kFrames, false);
-    const auto rendered = stage.run(kFrames, true);
+  for (const SmallRun& small : fiducial_policies()) {
+    SCOPED_TRACE(std::string(regulator::name(small.settings.regulator.policy)));
+    const auto planned = small.run(kFrames, false);
+    const auto rendered = small.run(kFrames, true);
     EXPECT_EQ(decisions_of(planned), decisions_of(rendered));
     EXPECT_GT(count(planned, Action::Reuse), 0);
-    EXPECT_GT(count(planned, Action::Rerender), static_cast<int>(stage.layers.layers.size()));
+    EXPECT_GT(count(planned, Action::Rerender), static_cast<int>(small.layers.layers.size()));
   }
 }
 
 TEST(Step, SameBytesForOneTwoAndThreeThreads) {
-  for (const Stage& stage : fiducial_policies()) {
-    SCOPED_TRACE(std::string(regulator::name(stage.settings.regulator.policy)));
+  for (const SmallRun& small : fiducial_policies()) {
+    SCOPED_TRACE(std::string(regulator::name(small.settings.regulator.policy)));
     std::vector<std::vector<std::string>> hashes;
     for (const int threads : {1, 2, 3}) {
       oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism, threads);
-      hashes.push_back(hashes_of(stage.run(8, true)));
+      hashes.push_back(hashes_of(small.run(8, true)));
     }
     EXPECT_EQ(hashes[0], hashes[1]);
     EXPECT_EQ(hashes[0], hashes[2]);
@@ -90,11 +90,11 @@ TEST(Step, SameBytesForOneTwoAndThreeThreads) {
 
 TEST(Step, FrameDrawnAfterPlanningOnlyHasTheSameBytes) {
   // --frames and --resume: every frame before the last is planned, not drawn.
-  for (const Stage& stage : fiducial_policies()) {
-    SCOPED_TRACE(std::string(regulator::name(stage.settings.regulator.policy)));
-    const auto all = stage.run(kFrames, true);
-    const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
-    const chunker::PreparedScene prepared(stage.scene);
+  for (const SmallRun& small : fiducial_policies()) {
+    SCOPED_TRACE(std::string(regulator::name(small.settings.regulator.policy)));
+    const auto all = small.run(kFrames, true);
+    const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
+    const chunker::PreparedScene prepared(small.scene);
     PipelineState state(pipeline);
     int late_renders = 0;
     for (int frame = 0; frame < kFrames; ++frame) {
@@ -112,13 +112,14 @@ TEST(Step, FrameDrawnAfterPlanningOnlyHasTheSameBytes) {
 TEST(Step, DisplayedErrorNeverExceedsTheThreshold) {
   for (const double px : {0.25, 1.0, 4.0})
     for (const FrameReport& report :
-         Stage(tests::moving_scene()).policy(Policy::Threshold, px).run(60, false))
+         SmallRun(tests::moving_scene()).policy(Policy::Threshold, px).run(60, false))
       for (const regulator::LayerDecision& d : report.plan.decisions) EXPECT_LE(d.shown_geometric_px, px);
 }
 
 TEST(StepLookahead, WithoutLookaheadEqualsThresholdByteForByte) {
-  const auto threshold = Stage(tests::moving_scene()).policy(Policy::Threshold, 2).run(kFrames, true);
-  const auto none = Stage(tests::moving_scene()).policy(Policy::Lookahead, 2).lookahead(0).run(kFrames, true);
+  const auto threshold = SmallRun(tests::moving_scene()).policy(Policy::Threshold, 2).run(kFrames, true);
+  const auto none =
+      SmallRun(tests::moving_scene()).policy(Policy::Lookahead, 2).lookahead(0).run(kFrames, true);
   EXPECT_EQ(count(none, Action::Rerender), count(threshold, Action::Rerender));
   EXPECT_EQ(hashes_of(none), hashes_of(threshold));
 }
@@ -126,8 +127,8 @@ TEST(StepLookahead, WithoutLookaheadEqualsThresholdByteForByte) {
 TEST(StepLookahead, ThresholdZeroEqualsReferenceByteForByte) {
   // Only what is identical is reused, so no instant but the frame's own can be chosen for what moves.
   for (const Policy policy : {Policy::Lookahead, Policy::Oracle})
-    EXPECT_EQ(hashes_of(Stage(tests::moving_scene()).policy(policy, 0).run(8, true)),
-              hashes_of(Stage(tests::moving_scene()).policy(Policy::Reference).run(8, true)));
+    EXPECT_EQ(hashes_of(SmallRun(tests::moving_scene()).policy(policy, 0).run(8, true)),
+              hashes_of(SmallRun(tests::moving_scene()).policy(Policy::Reference).run(8, true)));
 }
 
 TEST(StepLookahead, DisplayedErrorNeverExceedsTheThreshold) {
@@ -135,7 +136,7 @@ TEST(StepLookahead, DisplayedErrorNeverExceedsTheThreshold) {
   for (const Policy policy : {Policy::Lookahead, Policy::Oracle})
     for (const double px : {0.25, 1.0, 4.0}) {
       int fresh_but_warped = 0;
-      for (const FrameReport& report : Stage(tests::moving_scene()).policy(policy, px).run(60, false))
+      for (const FrameReport& report : SmallRun(tests::moving_scene()).policy(policy, px).run(60, false))
         for (const regulator::LayerDecision& d : report.plan.decisions) {
           EXPECT_LE(d.shown_geometric_px, px);
           fresh_but_warped += d.action == Action::Rerender && d.shown_geometric_px > 0;
@@ -148,8 +149,8 @@ TEST(StepLookahead, NeedsFewerRendersThanThresholdAndTheOracleFewest) {
   constexpr int kLong = 96;
   for (const double px : {0.25, 1.0, 4.0}) {
     const auto renders = [px](Policy policy, int lookahead) {
-      const Stage stage = Stage(tests::moving_scene()).policy(policy, px).lookahead(lookahead);
-      return count(stage.run(kLong, false), Action::Rerender);
+      const SmallRun small = SmallRun(tests::moving_scene()).policy(policy, px).lookahead(lookahead);
+      return count(small.run(kLong, false), Action::Rerender);
     };
     const int threshold = renders(Policy::Threshold, 0), oracle = renders(Policy::Oracle, 0);
     EXPECT_LT(oracle, threshold) << px;
@@ -163,7 +164,7 @@ TEST(StepLookahead, NeedsFewerRendersThanThresholdAndTheOracleFewest) {
 TEST(StepLookahead, PromisedRunsComeTrue) {
   // "rendered as of frame 7, serves 3-11": the layer is drawn again at 12, not before and not later.
   for (const Policy policy : {Policy::Lookahead, Policy::Oracle}) {
-    const auto reports = Stage(tests::moving_scene()).policy(policy, 1).lookahead(8).run(60, false);
+    const auto reports = SmallRun(tests::moving_scene()).policy(policy, 1).lookahead(8).run(60, false);
     for (std::size_t layer = 0; layer < reports[0].plan.decisions.size(); ++layer) {
       int next_render = 0;
       for (const FrameReport& report : reports) {
@@ -186,7 +187,8 @@ TEST(StepLookahead, PromisedRunsComeTrue) {
 }
 
 TEST(StepLookahead, AgeCountsFromTheFrameInWhichTheWorkWasDone) {
-  const auto reports = Stage(tests::moving_scene()).policy(Policy::Lookahead, 4).lookahead(8).run(30, false);
+  const auto reports =
+      SmallRun(tests::moving_scene()).policy(Policy::Lookahead, 4).lookahead(8).run(30, false);
   std::vector<int> rendered(reports[0].plan.decisions.size(), -1);
   for (const FrameReport& report : reports) {
     for (const regulator::LayerDecision& d : report.plan.decisions) {
@@ -203,10 +205,10 @@ TEST(StepLookahead, AgeCountsFromTheFrameInWhichTheWorkWasDone) {
 TEST(StepLookahead, MinimumRateIsKeptWhereADrawingWouldChangeAnything) {
   // A threshold that never is exceeded: only the rate draws again. The frame whose instant the sprite depicts
   // would be drawn identically and is spared.
-  Stage stage = Stage(tests::moving_scene()).policy(Policy::Oracle, 1e6);
-  for (layers::Layer& layer : stage.layers.layers) layer.preferences.min_update_rate = 0.125;
+  SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Oracle, 1e6);
+  for (layers::Layer& layer : small.layers.layers) layer.preferences.min_update_rate = 0.125;
   int due = 0;
-  for (const FrameReport& report : stage.run(40, false))
+  for (const FrameReport& report : small.run(40, false))
     for (const regulator::LayerAssessment& a : report.assessments) {
       if (a.frames_since_render < 8 || a.identical) continue;
       EXPECT_EQ(report.plan.decisions[a.layer].action, Action::Rerender) << report.frame;
@@ -217,10 +219,10 @@ TEST(StepLookahead, MinimumRateIsKeptWhereADrawingWouldChangeAnything) {
 
 TEST(StepBudget, NoFrameSpendsMoreThanItsBudgetExceptOnFirstAppearances) {
   for (const std::int64_t pixels : {0, 3000, 12'000}) {
-    Stage stage = Stage(tests::moving_scene()).policy(Policy::Budget);
-    stage.settings.regulator.budget_pixels = pixels;
+    SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Budget);
+    small.settings.regulator.budget_pixels = pixels;
     int deferred = 0, within = 0;
-    for (const FrameReport& report : stage.run(40, false)) {
+    for (const FrameReport& report : small.run(40, false)) {
       std::int64_t spent = 0, on_first_appearances = 0;
       for (const regulator::LayerDecision& d : report.plan.decisions) {
         spent += d.cost.pixels;
@@ -236,19 +238,19 @@ TEST(StepBudget, NoFrameSpendsMoreThanItsBudgetExceptOnFirstAppearances) {
 }
 
 TEST(StepBudget, UnlimitedBudgetWithoutCutOffLeavesNoError) {
-  Stage stage = Stage(tests::moving_scene()).policy(Policy::Budget);
-  stage.settings.regulator.cutoff_px = 0;
-  for (const FrameReport& report : stage.run(kFrames, false))
+  SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Budget);
+  small.settings.regulator.cutoff_px = 0;
+  for (const FrameReport& report : small.run(kFrames, false))
     for (const regulator::LayerDecision& d : report.plan.decisions) EXPECT_LT(d.shown_geometric_px, 1e-9);
 }
 
 TEST(StepBudget, MoreBudgetMeansLessError) {
   double before = HUGE_VAL;
   for (const std::int64_t pixels : {0, 3000, 60'000}) {
-    Stage stage = Stage(tests::moving_scene()).policy(Policy::Budget);
-    stage.settings.regulator.budget_pixels = pixels;
+    SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Budget);
+    small.settings.regulator.budget_pixels = pixels;
     double sum = 0;
-    for (const FrameReport& report : stage.run(40, false))
+    for (const FrameReport& report : small.run(40, false))
       for (const regulator::LayerDecision& d : report.plan.decisions) sum += d.shown_geometric_px;
     EXPECT_LT(sum, before) << pixels;
     before = sum;
@@ -259,14 +261,14 @@ TEST(Step, HigherThresholdsNeedFewerRenders) {
   int before = 1 << 30;
   for (const double px : {0.25, 1.0, 4.0, 16.0}) {
     const int renders =
-        count(Stage(tests::moving_scene()).policy(Policy::Threshold, px).run(60, false), Action::Rerender);
+        count(SmallRun(tests::moving_scene()).policy(Policy::Threshold, px).run(60, false), Action::Rerender);
     EXPECT_LE(renders, before) << px;
     before = renders;
   }
 }
 
 TEST(Step, CountersAddUpFromLayersToFrame) {
-  for (const FrameReport& report : Stage(tests::moving_scene()).policy(Policy::Reference).run(4, true)) {
+  for (const FrameReport& report : SmallRun(tests::moving_scene()).policy(Policy::Reference).run(4, true)) {
     chunker::RenderCounters sum;
     for (const chunker::RenderCounters& layer : report.render_by_layer) sum += layer;
     EXPECT_EQ(sum, report.render);
@@ -278,12 +280,12 @@ TEST(Step, CountersAddUpFromLayersToFrame) {
 }
 
 TEST(Step, DrawingTheTruthsDoesNotDisturbTheRun) {
-  const Stage stage = Stage(tests::moving_scene()).policy(Policy::Reference);
-  const Pipeline pipeline = make_pipeline(stage.scene, stage.layers, stage.settings);
-  const chunker::PreparedScene prepared(stage.scene);
-  const auto reports = stage.run(4, true);
+  const SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Reference);
+  const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
+  const chunker::PreparedScene prepared(small.scene);
+  const auto reports = small.run(4, true);
   EXPECT_EQ(hash_of(draw_reference(pipeline, 3, prepared)), hash_of(reports[3].picture));
-  const auto direct = Stage(tests::moving_scene()).policy(Policy::Direct).run(4, true);
+  const auto direct = SmallRun(tests::moving_scene()).policy(Policy::Direct).run(4, true);
   EXPECT_EQ(hash_of(draw_direct(pipeline, 3, prepared)), hash_of(direct[3].picture));
 }
 
@@ -321,7 +323,7 @@ TEST(Step, SameDecisionsInMillimetresAndMegametres) {
   // Nothing in the decision side may depend on the unit of length.
   const auto decisions = [](const layers::Scene& scene) {
     std::vector<Action> actions;
-    for (const FrameReport& report : Stage(scene).policy(Policy::Threshold, 2).run(kFrames, false))
+    for (const FrameReport& report : SmallRun(scene).policy(Policy::Threshold, 2).run(kFrames, false))
       for (const regulator::LayerDecision& d : report.plan.decisions) actions.push_back(d.action);
     return actions;
   };

@@ -12,23 +12,23 @@
 namespace talisman::sequences {
 
 /// A scene with its layers, ready to run.
-struct Stage {
+struct SmallRun {
   layers::Scene scene;
   layers::LayerSet layers;
   Settings settings;
 
-  explicit Stage(layers::Scene scene_in) : scene(std::move(scene_in)) {
+  explicit SmallRun(layers::Scene scene_in) : scene(std::move(scene_in)) {
     layers = layers::factor(scene, tests::one_layer_per_part(scene));
     settings.view.display_px = {200, 150};
   }
 
-  Stage& policy(regulator::Policy policy, double geometric_px = 4) {
+  SmallRun& policy(regulator::Policy policy, double geometric_px = 4) {
     settings.regulator.policy = policy;
     settings.regulator.geometric_px = geometric_px;
     return *this;
   }
 
-  Stage& lookahead(int frames) {
+  SmallRun& lookahead(int frames) {
     settings.regulator.lookahead_frames = frames;
     return *this;
   }

@@ -30,24 +30,9 @@
 ///
 /// An effect that is not called for is taken from nothing: the result is as it was given.
 
-#include <vector>
-
-#include "layers/effects.h"
-#include "sequences/content/sequence.h"
-#include "sequences/pipeline/pipeline.h"
+#include "sequences/experiments/variant.h"
 
 namespace talisman::sequences {
-
-/// A sequence and how it is run. A plain value; the scene is shared until it is changed.
-struct Variant {
-  Sequence sequence;  ///< needs its layer_specs
-  Settings settings;
-};
-
-/// The table of layers/effects.h for this sequence under these settings.
-std::vector<layers::EffectCall> effects_of(const Variant& variant);
-/// One row of it.
-layers::EffectCall effect_call(const Variant& variant, layers::Effect effect);
 
 /// Cost: a copy of the scene where the scene is changed, and the factoring of its layers.
 Variant without_effect(const Variant& given, layers::Effect effect);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/experiments/without_effect.h"
+#include "sequences/experiments/effect_removal.h"
 
 #include <algorithm>
 #include <map>
@@ -12,9 +12,6 @@
 #include "chunker/texture.h"
 #include "layers/check.h"
 #include "layers/shading.h"
-#include "sequences/pipeline/run_effects.h"
-#include "sequences/pipeline/step.h"
-#include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {
 namespace {
@@ -297,17 +294,6 @@ void remove(Variant& variant, Effect effect) {
 }
 
 }  // namespace
-
-std::vector<layers::EffectCall> effects_of(const Variant& variant) {
-  return layers::effects_called_for(*variant.sequence.scene, variant.sequence.layers.layers,
-                                    run_effects(variant.settings));
-}
-
-layers::EffectCall effect_call(const Variant& variant, Effect effect) {
-  for (layers::EffectCall& call : effects_of(variant))
-    if (call.effect == effect) return call;
-  return {};
-}
 
 Variant without_effect(const Variant& given, Effect effect) {
   TALISMAN_CHECK(!given.sequence.layer_specs.empty());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/experiments/without_effect.h"
+#include "sequences/experiments/effect_removal.h"
 
 #include <cmath>
 #include <map>

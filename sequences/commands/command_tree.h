@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The words of the tool: its commands and their options, what they mean, and what each command runs.
+
+#include <atomic>
+
+#include <CLI/CLI.hpp>
+
+#include "sequences/commands/accuracy.h"
+#include "sequences/commands/inspect.h"
+#include "sequences/commands/options.h"
+#include "sequences/commands/warps.h"
+#include "sequences/files/errors.h"
+#include "sequences/pictures/diff.h"
+
+namespace talisman::sequences {
+
+class CommandTree {
+ public:
+  /// A run stops between two frames once `stop` is true.
+  explicit CommandTree(const std::atomic<bool>& stop);
+  CommandTree(const CommandTree&) = delete;
+  CommandTree& operator=(const CommandTree&) = delete;
+
+  /// Its parse() runs the command.
+  CLI::App& app() { return app_; }
+  /// Of the command that was run.
+  int exit_code() const { return exit_code_; }
+
+ private:
+  void add_runs(const std::atomic<bool>& stop);
+  void add_inspect();
+  void add_diff();
+  void add_warps();
+  void add_accuracy();
+
+  CLI::App app_;
+  CommandLine line_;
+  InspectOptions inspect_;
+  DiffOptions diff_;
+  WarpsOptions warps_;
+  AccuracyOptions accuracy_;
+  int exit_code_ = kSuccess;
+};
+
+}  // namespace talisman::sequences

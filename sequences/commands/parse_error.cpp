@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/commands/parse_error.h"
+
+#include <vector>
+
+#include "sequences/commands/nearest_word.h"
+
+namespace talisman::sequences {
+namespace {
+
+bool is_option(const std::string& argument) { return argument.size() > 1 && argument.front() == '-'; }
+
+/// Without what it is set to: "--size" of "--size=64x48".
+std::string name_of(const std::string& option) { return option.substr(0, option.find('=')); }
+
+std::vector<std::string> commands_of(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    names.push_back(command->get_name());
+  return names;
+}
+
+std::vector<std::string> options_of(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options())
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
+
+/// "'rendr' is no command; did you mean 'render'?"
+std::string unknown_word(const std::string& written, const std::string& kind,
+                         const std::vector<std::string>& known) {
+  const std::string what = "'" + written + "' is no " + kind + "; ";
+  if (const std::string nearest = nearest_word(written, known); !nearest.empty())
+    return what + "did you mean '" + nearest + "'?";
+  std::string names;
+  for (const std::string& name : known) names += (names.empty() ? "" : ", ") + name;
+  return what + "must be one of " + names;
+}
+
+}  // namespace
+
+std::string explained(const CLI::App& app, const CLI::ParseError& error) {
+  const std::vector<std::string> unknown = app.remaining(true);
+  const std::vector<CLI::App*> parsed = app.get_subcommands();
+  if (parsed.empty() && !unknown.empty())
+    return is_option(unknown.front()) ? unknown_word(name_of(unknown.front()), "option", options_of(app))
+                                      : unknown_word(unknown.front(), "command", commands_of(app));
+  for (const std::string& argument : unknown) {
+    if (!is_option(argument)) continue;
+    const std::string nearest = nearest_word(name_of(argument), options_of(*parsed.front()));
+    if (!nearest.empty()) return std::string(error.what()) + "; did you mean '" + nearest + "'?";
+  }
+  return error.what();
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/commands/version.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include <hwy/targets.h>
+
+#include "git_commit.h"
+#include "layers/effect.h"
+#include "sequences/commands/missing_effects.h"
+
+namespace talisman::sequences {
+namespace {
+
+/// "all 17", or "15 of 17, without shadow_map, texture".
+std::string effects_text() {
+  const layers::EffectSet built = built_effects();
+  const auto count = std::count(built.begin(), built.end(), true);
+  if (count == std::ssize(built)) return "all " + std::to_string(count);
+  std::string text = std::to_string(count) + " of " + std::to_string(built.size());
+  const char* before = ", without ";
+  for (const layers::Effect effect : layers::kAllEffects) {
+    if (built[static_cast<std::size_t>(effect)]) continue;
+    text += before + std::string(layers::name(effect));
+    before = ", ";
+  }
+  return text;
+}
+
+/// The best of those that the inner loops are compiled for and this machine has.
+const char* simd_target() {
+  const std::int64_t usable = hwy::SupportedTargets() & HWY_TARGETS;
+  return hwy::TargetName(usable & -usable);  // the lower the bit, the better the target
+}
+
+}  // namespace
+
+std::string version_text() {
+  return "talisman " TALISMAN_VERSION "\ncommit: " TALISMAN_COMMIT "\neffects: " + effects_text() +
+         "\nsimd: " + simd_target();
+}
+
+}  // namespace talisman::sequences

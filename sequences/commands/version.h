@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Which build is this?
+
+#include <string>
+
+namespace talisman::sequences {
+
+/// What `talisman --version` prints, four lines: version; commit ("unknown" where it was not built from a git
+/// checkout of its own, "-dirty" after it where files differ from it); effects built; instruction set that
+/// the inner loops run with on this machine, by its name in Highway.
+std::string version_text();
+
+}  // namespace talisman::sequences
