@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "sequences/import/texture_io.h"
+
 namespace talisman::sequences {
 
 namespace {
