@@ -12,11 +12,7 @@ using Kind = ValueType::Kind;
 
 std::string code(const std::string& text) { return "`" + text + "`"; }
 
-std::string link_to(const std::string& table) { return "[" + table + "](#keys-of-" + table + ")"; }
-
-std::string link_to(const MapKeys& keys) {
-  return link_to(keys.name);
-}
+std::string link_to(const MapKeys& keys) { return "[" + keys.name + "](#keys-of-" + keys.name + ")"; }
 
 std::string value_in_markdown(const ValueType& type) {
   std::vector<std::string> parts;
@@ -60,13 +56,13 @@ std::string line_of(const KeyRow& row, const std::string& when) {
 
 /// Rows that were taken over from a table with a name are one line that refers to it.
 std::string lines_of(const MapKeys& keys, const std::string& when) {
-  std::string text, from;
+  std::string text;
+  const MapKeys* from = nullptr;
   for (const KeyRow& row : keys.rows) {
-    if (row.from.empty())
+    if (!row.from)
       text += line_of(row, when);
     else if (row.from != from)
-      text +=
-          "| keys of " + link_to(row.from) + when + " | | | | |\n";
+      text += "| keys of " + link_to(*row.from) + when + " | | | | |\n";
     from = row.from;
   }
   for (const Branch& branch : keys.branches) text += lines_of(branch.keys, ", " + branch.when.in_words());
@@ -94,7 +90,7 @@ void add_type_rules(const ValueType& type, const std::string& path, std::string&
 void add_rules(const MapKeys& keys, const std::string& name, std::string& text) {
   for (const KeyRule& rule : keys.rules) text += "- " + code(name) + ": " + rule.words + "\n";
   for (const KeyRow& row : keys.rows)
-    if (row.from.empty()) add_type_rules(row.type, name + "." + row.key, text);
+    if (!row.from) add_type_rules(row.type, name + "." + row.key, text);
   for (const Branch& branch : keys.branches) add_rules(branch.keys, name, text);
 }
 

@@ -75,7 +75,7 @@ Json default_of(const std::string& written) {
 }
 
 Json property(const KeyRow& row) {
-  if (!row.from.empty()) return {{"$ref", "#/$defs/" + row.from + "/properties/" + row.key}};
+  if (row.from) return {{"$ref", "#/$defs/" + row.from->name + "/properties/" + row.key}};
   Json schema = schema_of(row.type);
   schema["description"] = row.meaning + (row.unit.empty() ? "" : " [" + row.unit + "]");
   if (!row.standard.empty()) schema["default"] = default_of(row.standard);

@@ -93,8 +93,8 @@ class Table {
     return *this;
   }
 
-  /// The rows of another table, read into `member`. The document refers to it by its name, and takes the rows
-  /// of a table without a name as if they were written here.
+  /// The rows of another table, read into `member`. The document refers to it by its name (it must live as long
+  /// as this one), and takes the rows of a table without a name as if they were written here.
   template <typename Member, typename Other>
   Table& include(Member member, const Table<Other>& other) {
     const auto at = [member](void* into) -> void* { return &std::invoke(member, *static_cast<T*>(into)); };
@@ -178,7 +178,7 @@ class Table {
   void take_over(const MapKeys& other, const std::function<void*(void*)>& at) {
     for (KeyRow row : other.rows) {
       row.read = [at, read = row.read](const YamlValue& value, void* into) { read(value, at(into)); };
-      if (row.from.empty()) row.from = other.name;
+      if (!row.from && !other.name.empty()) row.from = &other;
       keys_.rows.push_back(std::move(row));
     }
     for (const auto& begin : other.begins)

@@ -94,7 +94,10 @@ void find_tables(const ValueType& type, Parts& found) {
 }
 
 void find_tables(const MapKeys& keys, Parts& found) {
-  for (const KeyRow& row : keys.rows) find_tables(row.type, found);
+  for (const KeyRow& row : keys.rows) {
+    if (row.from) find_tables(map_type(*row.from), found);
+    find_tables(row.type, found);
+  }
   for (const Branch& branch : keys.branches) find_tables(branch.keys, found);
 }
 

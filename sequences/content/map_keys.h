@@ -27,7 +27,7 @@ struct KeyRow {
   bool is_required = false;
   std::string only_with;              ///< another key, without which this one has no meaning
   std::vector<std::string> not_with;  ///< keys that exclude this one
-  std::string from;                   ///< name of the table that the row was taken over from; empty: its own
+  const MapKeys* from = nullptr;      ///< the table that the row was taken over from; nullptr: its own
   std::function<void(const YamlValue& value, void* into)> read{};
 };
 
