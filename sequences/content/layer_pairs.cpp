@@ -53,15 +53,20 @@ void check(const LayerPairEntry& entry, const Layer& behind, const Layer& front,
 
 }  // namespace
 
-std::vector<LayerPairEntry> read_layer_pairs(const YamlValue& list) {
-  std::vector<LayerPairEntry> entries;
-  for (const YamlValue& item : list.items(0)) {
-    YamlMap map = item.map();
-    LayerPairEntry entry{map.need("behind").text(), map.need("front").text(), item.file(), item.line()};
-    map.finish();
-    entries.push_back(std::move(entry));
-  }
-  return entries;
+const Table<LayerPairEntry>& layer_pair_keys() {
+  using P = LayerPairEntry;
+  static const Table<P> table = Table<P>("pair")
+                                    .placed([](P& pair, const YamlValue& self) {
+                                      pair.file = self.file();
+                                      pair.line = self.line();
+                                    })
+                                    .key("behind", &P::behind, with_rule(text(), "matches a layer"), "",
+                                         "glob over the names of layers")
+                                    .required()
+                                    .key("front", &P::front, with_rule(text(), "matches another layer"), "",
+                                         "those in front of all that `behind` names")
+                                    .required();
+  return table;
 }
 
 std::vector<ExplicitPair> resolve_layer_pairs(std::span<const LayerPairEntry> entries,

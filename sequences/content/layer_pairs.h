@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "layers/visibility.h"
-#include "sequences/content/yaml_reader.h"
+#include "sequences/content/key_table.h"
 
 namespace talisman::sequences {
 
@@ -19,7 +19,7 @@ struct LayerPairEntry {
   int line = 0;
 };
 
-std::vector<LayerPairEntry> read_layer_pairs(const YamlValue& list);
+const Table<LayerPairEntry>& layer_pair_keys();
 
 /// Every layer that `behind` matches with every other layer that `front` matches. Throws InputError for a
 /// glob that matches no layer, an entry that names one layer twice and nothing else, and a pair that

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequences/content/scene_builder.h"
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <map>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
-#include "sequences/content/scene_recipe.h"
 #include "sequences/import/texture_io.h"
 
 namespace talisman::sequences {
@@ -168,11 +168,12 @@ void add_camera(BuiltScene& built, const CameraRecipe& recipe) {
   scene.cameras.push_back(camera);
 }
 
-void add_lights(BuiltScene& built, const SceneRecipe& recipe) {
-  for (std::size_t i = 0; i < recipe.lights.size(); ++i) {
-    layers::Light light = recipe.lights[i];
+void add_lights(BuiltScene& built, const std::vector<LightRecipe>& recipes) {
+  for (std::size_t i = 0; i < recipes.size(); ++i) {
+    layers::Light light = recipes[i].light;
+    light.color *= static_cast<float>(recipes[i].intensity);
     const std::string name = light.name.empty() ? "light " + std::to_string(i) : light.name;
-    if (recipe.light_motions[i]) light.node = add_motion(built, name, *recipe.light_motions[i]);
+    if (recipes[i].moves) light.node = add_motion(built, name, recipes[i].motion);
     built.scene.lights.push_back(std::move(light));
   }
 }
@@ -242,7 +243,7 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);
   for (const ModelRecipe& model : recipe.models) add_model(built, model);
   if (recipe.camera) add_camera(built, *recipe.camera);
-  add_lights(built, recipe);
+  add_lights(built, recipe.lights);
   add_default_view(built.scene);
   return built;
 }

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "sequences/content/asset_paths.h"
+#include "sequences/content/scene_builder.h"
 #include "sequences/content/sequence_file.h"
 
 namespace talisman::sequences {
@@ -108,12 +109,6 @@ Sequence load_model(const std::string& path) {
   finish(sequence, {std::move(model.scene), {}, std::move(model.warnings)}, std::move(specs));
   if (!sequence.layers.defect.empty()) throw InputError(sequence.layers.defect, path);
   return sequence;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
-  return text;
 }
 
 }  // namespace

@@ -6,17 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "sequences/content/layer_keys.h"
 #include "sequences/content/layer_pairs.h"
 #include "sequences/content/scene_recipe.h"
 #include "sequences/content/sequence.h"
 
 namespace talisman::sequences {
-
-struct LayerEntry {
-  layers::LayerSpec spec;
-  std::string file;  ///< and line: where it is written, for errors that show only with the scene
-  int line = 0;
-};
 
 struct SequenceFile {
   Sequence settings;  ///< without scene and layers
@@ -24,6 +19,9 @@ struct SequenceFile {
   std::vector<LayerEntry> layers;  ///< empty: one per moving or top-level node
   std::vector<LayerPairEntry> order;
 };
+
+/// The keys at the top of a file, from which all others are reached.
+const Table<SequenceFile>& sequence_keys();
 
 /// Reads and checks the whole file, and that the assets it names are there. Throws InputError.
 SequenceFile read_sequence_file(const std::string& file);

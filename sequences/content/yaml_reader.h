@@ -1,21 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// YAML without guesses: every value has a type and a range, every key is known, and whatever is wrong is an
-/// InputError `FILE:LINE: what, the value, the rule`. A reader asks a map for the keys it knows and then
-/// calls `finish`, which refuses the keys that nobody asked for and lists those that exist.
+/// YAML without guesses: every value has a type and a range, and whatever is wrong is an InputError
+/// `FILE:LINE: what, the value, the rule`. Which keys a map has is said by its table (key_table.h).
 
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
+#include "sequences/content/value_type.h"
 #include "sequences/files/errors.h"
 
 namespace YAML {
@@ -23,17 +21,6 @@ class Node;
 }
 
 namespace talisman::sequences {
-
-/// Allowed numbers; `above` excludes the lower end itself.
-struct Range {
-  double low = -std::numeric_limits<double>::max();
-  double high = std::numeric_limits<double>::max();
-  bool above = false;
-};
-
-inline constexpr Range kAnyNumber{};
-inline constexpr Range kPositive{0, std::numeric_limits<double>::max(), true};
-inline constexpr Range kNotNegative{0, std::numeric_limits<double>::max(), false};
 
 class YamlMap;
 
@@ -51,8 +38,8 @@ class YamlValue {
   glm::vec3 color() const;                    ///< [r, g, b] linear, ≥ 0, or "#rrggbb" in sRGB
   std::vector<YamlValue> items(std::size_t at_least = 1) const;
   YamlMap map() const;
-  /// Index of the text in `names`.
-  int choice(const std::vector<std::string>& names) const;
+  /// Index of the text in `words`.
+  std::size_t choice(const std::vector<std::string>& words) const;
 
   bool is_list() const;
   /// "what, the value, the rule" with file and line.
@@ -67,36 +54,24 @@ class YamlValue {
   std::string file_;
 };
 
+/// The values of a map by their keys, and where the map itself stands.
 class YamlMap {
  public:
-  explicit YamlMap(std::map<std::string, YamlValue> values, YamlValue self);
+  YamlMap(std::map<std::string, YamlValue> values, YamlValue self);
 
   /// nullptr when the key is not there.
-  const YamlValue* find(const std::string& key);
-  const YamlValue& need(const std::string& key);
-  bool has(const std::string& key) const { return values_.count(key) > 0; }
-
-  void read(const std::string& key, double& into, const Range& range);
-  void read(const std::string& key, int& into, int low, int high);
-  void read(const std::string& key, bool& into);
-  void read(const std::string& key, std::string& into);
-  void read(const std::string& key, glm::dvec3& into);
-  void read_color(const std::string& key, glm::vec3& into);
-  std::vector<std::string> texts(const std::string& key);
-
-  /// Refuses the first key that was not asked for.
-  void finish() const;
+  const YamlValue* find(const std::string& key) const;
+  const std::map<std::string, YamlValue>& values() const { return values_; }
   const YamlValue& self() const { return self_; }
   /// Values of `over` replace ours of the same key.
   void replace_by(const YamlMap& over);
 
  private:
   std::map<std::string, YamlValue> values_;
-  std::set<std::string> known_;
   YamlValue self_;
 };
 
-/// The map at the top of a YAML file.
+/// The map at the top of a YAML file: one document, in UTF-8.
 YamlMap read_yaml_file(const std::string& file);
 
 /// The same from text; `file` is only named in errors.

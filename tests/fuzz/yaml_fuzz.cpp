@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text in the place of a sequence file: every value is asked for in every type, and only InputError may
-// come out.
+// Any text in the place of a sequence file: every value is asked for in every type, the whole is read as a
+// sequence, and only InputError may come out.
 #include <cstddef>
 #include <cstdint>
 #include <string>
 
-#include "sequences/content/yaml_reader.h"
+#include "sequences/content/sequence_file.h"
 
 namespace {
 
@@ -29,7 +29,7 @@ void ask_all(const YamlValue& value) {
   ask([&] { value.color(); });
   ask([&] { value.pair(talisman::sequences::kPositive); });
   ask([&] { value.choice({"a", "b"}); });
-  ask([&] { value.map().finish(); });
+  ask([&] { value.map(); });
 }
 
 }  // namespace
@@ -37,10 +37,10 @@ void ask_all(const YamlValue& value) {
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text(reinterpret_cast<const char*>(data), size);
   ask([&] {
-    auto map = talisman::sequences::read_yaml_text(text, "fuzz.yaml");
+    const auto map = talisman::sequences::read_yaml_text(text, "fuzz.yaml");
     for (const char* key : {"name", "frames", "display", "models", "layers"})
       if (const YamlValue* value = map.find(key)) ask_all(*value);
-    map.finish();
+    talisman::sequences::sequence_keys().read(map);
   });
   return 0;
 }

@@ -150,7 +150,7 @@ TEST(LoadSequence, WrongShapesAreRefusedWithTheirLine) {
   EXPECT_THAT(error_of("  - {id: a, box: [1, 0, 1]}\n"), HasSubstr("every side above 0"));
   EXPECT_THAT(error_of("  - {id: a, sphere: -1}\n"), HasSubstr("shapes[0].sphere"));
   EXPECT_THAT(error_of("  - {id: a, sphere: 1, segments: 2}\n"), HasSubstr("segments"));
-  EXPECT_THAT(error_of("  - {id: a, sphere: 1, taper: 0.5}\n"), HasSubstr("only with cylinder"));
+  EXPECT_THAT(error_of("  - {id: a, sphere: 1, taper: 0.5}\n"), HasSubstr("only together with cylinder"));
   EXPECT_THAT(error_of("  - {id: a, sphere: 1, radius: 2}\n"), HasSubstr("radius"));
   EXPECT_THAT(error_of("  - {id: a, sphere: 1}\n  - {id: a, sphere: 2}\n"),
               HasSubstr("test.yaml:5: two shapes are called 'a'"));

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// From what a sequence file says (scene_recipe.h) to a scene: opens models and pictures and puts everything
+/// where it belongs.
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "layers/layer.h"
+#include "sequences/content/scene_recipe.h"
+#include "sequences/import/model_import.h"
+
+namespace talisman::sequences {
+
+struct BuiltScene {
+  layers::Scene scene;
+  std::vector<LayerTag> layer_tags;
+  std::vector<std::string> warnings;
+  std::map<std::string, int> carriers = {};  ///< the node of each shape that can carry others, by its name
+};
+
+/// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of
+/// `add_default_view`; cameras and lights inside its models are not used. Throws InputError for an asset that
+/// cannot be read, a name that is given twice and a carrier that is not there.
+BuiltScene build_scene(const SceneRecipe& recipe);
+
+/// An orbit around all parts (one turn in 5 s, seen slightly from above) if there is no camera; a sun and
+/// ambient light if there is no light. Any unit scale is framed.
+void add_default_view(layers::Scene& scene);
+
+/// Bounds of all parts over the scene's duration (sampled at 9 times).
+layers::WorldBounds bounds_of_scene(const layers::Scene& scene);
+
+}  // namespace talisman::sequences
