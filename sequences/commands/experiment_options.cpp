@@ -2,7 +2,6 @@
 #include "sequences/commands/experiment_options.h"
 
 #include <array>
-#include <filesystem>
 
 #include "sequences/files/errors.h"
 
@@ -33,12 +32,6 @@ layers::BoundKind bound_kind_from(const std::string& name) {
   return chosen("--bound", name,
                 std::array{std::pair{"box8", BoundKind::Box8}, std::pair{"dop14", BoundKind::Dop14},
                            std::pair{"dop26", BoundKind::Dop26}});
-}
-
-void create_folder(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error) throw OutputError(path + ": cannot be created: " + error.message());
 }
 
 }  // namespace talisman::sequences

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "layers/polyhedron.h"
+#include "sequences/files/folders.h"
 #include "sequences/files/progress.h"
 
 namespace talisman::sequences {
@@ -15,8 +16,5 @@ ProgressKind progress_kind_from(const std::string& name);
 
 /// Of "box8", "dop14", "dop26" (option --bound). Throws InputError.
 layers::BoundKind bound_kind_from(const std::string& name);
-
-/// Creates the folder and those above it where they are not there. Throws OutputError.
-void create_folder(const std::string& path);
 
 }  // namespace talisman::sequences

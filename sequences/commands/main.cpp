@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tool: one program, a few commands. Everything it does is in the libraries; here are only the words.
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <memory>
 #include <string>
@@ -11,11 +13,12 @@
 #include <CLI/CLI.hpp>
 
 #include "sequences/commands/accuracy.h"
+#include "sequences/commands/cache_options.h"
+#include "sequences/commands/diff_command.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/inspect_order.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/warps.h"
-#include "sequences/pictures/diff.h"
 
 namespace {
 
@@ -145,6 +148,7 @@ struct Commands {
   DiffOptions diff;
   WarpsOptions warps;
   AccuracyOptions accuracy;
+  CacheWords cache;
   int exit_code = kSuccess;
 
   Commands() {
@@ -177,6 +181,7 @@ struct Commands {
     diff_command->add_option("--map", diff.map_dir, "write FLIP error maps into this folder");
     diff_command->callback([this] { exit_code = run_diff(diff, std::cout); });
     add_experiments();
+    for (CLI::App* command : {render, plan, inspect}) add_cache_options(*command, cache);
   }
 
   void add_experiments() {
@@ -186,6 +191,7 @@ struct Commands {
     warps_command->add_option("--bound", warps.bound, "characteristic polyhedron: box8, dop14 or dop26");
     warps_command->add_option("--out", warps.out, "result folder (out/warps)");
     warps_command->add_option("--progress", warps.progress, "auto, bar, plain or none");
+    add_cache_options(*warps_command, cache);
     warps_command->callback([this] { exit_code = run_warps(warps, std::cout); });
 
     CLI::App* accuracy_command = app.add_subcommand("accuracy", "what accuracy costs in time");
@@ -212,6 +218,7 @@ struct Commands {
         "(renderer) in all");
     accuracy_command->add_option("--out", accuracy.out, "result folder (out/accuracy)");
     accuracy_command->add_option("--progress", accuracy.progress, "auto, bar, plain or none");
+    add_cache_options(*accuracy_command, cache);
     accuracy_command->callback([this] { exit_code = run_accuracy(accuracy, std::cout); });
   }
 };
@@ -219,6 +226,17 @@ struct Commands {
 int fail(const std::exception& error, int code) {
   std::fprintf(stderr, "error: %s\n", error.what());
   return code;
+}
+
+/// The exit code of a command that ended with `code`: what it printed must have arrived.
+int finish(int code) {
+  warn_of_cache();
+  std::cout.flush();
+  const bool flushed = std::fflush(stdout) == 0;
+  const std::string why = flushed ? "" : std::string(": ") + std::strerror(errno);
+  if (flushed && !std::ferror(stdout)) return code;
+  std::fprintf(stderr, "error: standard output: cannot be written%s\n", why.c_str());
+  return kFailed;
 }
 
 }  // namespace
@@ -231,11 +249,11 @@ int main(int argc, char** argv) try {
   try {
     commands.app.parse(argc, argv);
   } catch (const CLI::Success& help) {
-    return commands.app.exit(help);
+    return finish(commands.app.exit(help));
   } catch (const CLI::ParseError& error) {
     return fail(error, kBadInput);
   }
-  return commands.exit_code;
+  return finish(commands.exit_code);
 } catch (const InputError& error) {
   return fail(error, kBadInput);
 } catch (const PartialResult& error) {
