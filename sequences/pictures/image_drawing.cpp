@@ -69,14 +69,14 @@ void draw_text(Image8& image, const std::string& text, ivec2 at, Rgb color, int 
               scalar(color), 1, cv::LINE_AA);
 }
 
-void draw_line(Image8& image, dvec2 from, dvec2 to, Rgb color, int width_px) {
+void draw_line(Image8& image, dvec2 from, dvec2 to, Rgb color, int scale) {
   if (image.rgb.empty()) return;
   const auto fixed_point = [](dvec2 p) {  // OpenCV counts from the centre of the first pixel
     return cv::Point(static_cast<int>(std::lround((p.x - 0.5) * (1 << kFractionBits))),
                      static_cast<int>(std::lround((p.y - 0.5) * (1 << kFractionBits))));
   };
   const std::vector<cv::Point> ends{fixed_point(from), fixed_point(to)};
-  cv::polylines(view_of(image), ends, false, scalar(color), width_px, cv::LINE_AA, kFractionBits);
+  cv::polylines(view_of(image), ends, false, scalar(color), scale, cv::LINE_AA, kFractionBits);
 }
 
 void tint(Image8& image, const Crop& where, Rgb color, double share) {

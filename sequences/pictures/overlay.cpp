@@ -17,7 +17,7 @@ using layers::dvec3;
 using layers::ivec2;
 using layers::RectI;
 
-constexpr int kLineWidthPx = 2;
+constexpr int kLargePx = 600;      // from this size on pictures have letters and lines of the larger size
 constexpr double kMarginPx = 2;    // lines just outside still reach in
 constexpr int kLabelMarginPx = 3;  // of the letters in their box
 constexpr Rgb kLabelGround{12, 12, 16};
@@ -113,8 +113,7 @@ RectI moved_inside(RectI box, int width, int height) {
 
 class Labels {
  public:
-  explicit Labels(Image8& image)
-      : image_(image), scale_(std::min(image.width, image.height) >= 600 ? 2 : 1) {}
+  Labels(Image8& image, int scale) : image_(image), scale_(scale) {}
 
   void draw(const std::string& text, dvec2 anchor, Rgb color) {
     if (text.empty()) return;
@@ -167,14 +166,15 @@ void draw_outlines(Image8& image, const std::vector<Outline>& outlines, int olde
   TALISMAN_CHECK_EQ(image.rgb.size(), static_cast<std::size_t>(image.width) * image.height * 3);
   TALISMAN_CHECK_GE(oldest_frames, 1);
   if (image.rgb.empty()) return;
+  const int scale = std::min(image.width, image.height) >= kLargePx ? 2 : 1;
   std::vector<std::optional<dvec2>> anchors;
   for (const Outline& outline : outlines) {
     const auto edges = visible_edges(outline, image.width, image.height);
     for (const Segment& edge : edges)
-      draw_line(image, edge.a, edge.b, age_color(outline.age_frames, oldest_frames), kLineWidthPx);
+      draw_line(image, edge.a, edge.b, age_color(outline.age_frames, oldest_frames), scale);
     anchors.push_back(label_anchor(outline, edges, image.width, image.height));
   }
-  Labels labels(image);
+  Labels labels(image, scale);
   for (std::size_t i = 0; i < outlines.size(); ++i)
     if (anchors[i])
       labels.draw(outlines[i].label, *anchors[i], age_color(outlines[i].age_frames, oldest_frames));
