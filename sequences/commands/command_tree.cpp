@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "sequences/commands/cache_options.h"
 #include "sequences/commands/render.h"
 #include "sequences/commands/version.h"
 #include "sequences/commands/words.h"
@@ -135,6 +136,8 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_diff();
   add_warps();
   add_accuracy();
+  for (const char* command : {"render", "plan", "inspect", "warps", "accuracy"})
+    add_cache_options(*app_.get_subcommand(command), cache_);
 }
 
 void CommandTree::add_runs(const std::atomic<bool>& stop) {

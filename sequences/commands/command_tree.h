@@ -8,11 +8,12 @@
 #include <CLI/CLI.hpp>
 
 #include "sequences/commands/accuracy.h"
+#include "sequences/commands/cache_options.h"
+#include "sequences/commands/diff_command.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/warps.h"
 #include "sequences/files/errors.h"
-#include "sequences/pictures/diff.h"
 
 namespace talisman::sequences {
 
@@ -41,6 +42,7 @@ class CommandTree {
   DiffOptions diff_;
   WarpsOptions warps_;
   AccuracyOptions accuracy_;
+  CacheWords cache_;
   int exit_code_ = kSuccess;
 };
 

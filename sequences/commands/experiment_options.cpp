@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 
 #include "sequences/commands/words.h"
 
@@ -36,11 +35,5 @@ ExperimentFrames experiment_frames(const ResolvedRun& run, int every, int sample
 }
 
 void require_progress_word(const std::string& word) { choice("--progress", word, kProgressWords); }
-
-void create_folder(const std::string& path) {
-  std::error_code error;
-  std::filesystem::create_directories(path, error);
-  if (error) throw OutputError(path + ": cannot be created: " + error.message());
-}
 
 }  // namespace talisman::sequences

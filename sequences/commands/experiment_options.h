@@ -11,6 +11,8 @@
 #include "sequences/content/sequence.h"
 #include "sequences/experiments/sampled_frames.h"
 #include "sequences/files/errors.h"
+#include "sequences/files/folders.h"
+#include "sequences/files/progress.h"
 #include "sequences/results/run.h"
 
 namespace talisman::sequences {
@@ -42,9 +44,6 @@ ExperimentFrames experiment_frames(const ResolvedRun& run, int every, int sample
 
 /// Throws InputError unless it is one of the words of --progress.
 void require_progress_word(const std::string& word);
-
-/// Creates the folder and those above it where they are not there. Throws OutputError.
-void create_folder(const std::string& path);
 
 /// What makes one experiment out of the steps that all of them take.
 template <typename Report>

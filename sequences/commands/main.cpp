@@ -2,11 +2,14 @@
 // The tool: one program, a few commands. Everything it does is in the libraries, its words are in
 // command_tree.cpp; here are signals, errors and exit codes.
 #include <atomic>
+#include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <iostream>
 #include <string>
 
+#include "sequences/commands/cache_options.h"
 #include "sequences/commands/command_tree.h"
 #include "sequences/commands/parse_error.h"
 
@@ -24,20 +27,30 @@ int fail(const std::string& what, int code) {
   return code;
 }
 
+/// The exit code of a command that ended with `code`: what it printed must have arrived.
+int finish(int code) {
+  warn_of_cache();
+  std::cout.flush();
+  const bool flushed = std::fflush(stdout) == 0;
+  const std::string why = flushed ? "" : std::string(": ") + std::strerror(errno);
+  if (flushed && std::cout && !std::ferror(stdout)) return code;
+  return fail("standard output: cannot be written" + why, kFailed);
+}
+
 int run(int argc, char** argv) {
   CommandTree tree(stop_requested);
   if (argc == 1) {
     std::cout << tree.app().help();
-    return kBadInput;
+    return finish(kBadInput);
   }
   try {
     tree.app().parse(argc, argv);
   } catch (const CLI::Success& asked) {
-    return tree.app().exit(asked);
+    return finish(tree.app().exit(asked));
   } catch (const CLI::ParseError& error) {
     return fail(explained(tree.app(), error), kBadInput);
   }
-  return tree.exit_code();
+  return finish(tree.exit_code());
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <sstream>
 
-#include "sequences/content/ground_texture.h"
+#include "sequences/content/painted_ground.h"
 #include "sequences/import/texture_io.h"
 
 namespace talisman::sequences {
@@ -86,14 +86,13 @@ void remap(layers::Mesh& mesh, const layers::HeightField& field, Rows rows) {
   }
 }
 
-layers::Texture bake_segment(const GroundPainter& painter, const TerrainContent& content,
-                             const layers::HeightField& field, Rows rows) {
+GroundWindow window_of(const layers::HeightField& field, Rows rows) {
   GroundWindow window;
   window.first_column = -kTextureMargin;
   window.first_row = rows.first - kTextureMargin;
   window.columns = field.columns - 1 + 2 * kTextureMargin;
   window.rows = rows.last - rows.first + 2 * kTextureMargin;
-  return painter.bake(window, content.texels_per_cell);
+  return window;
 }
 
 }  // namespace
@@ -161,18 +160,23 @@ void add_terrain(layers::Scene& scene, const TerrainContent& content) {
   layers::TerrainOptions options;
   options.cells_per_segment = (field.rows - 2) / content.segments + 1;
   options.seam_cells = content.seam_cells;
-  const GroundPainter painter(content, field);
-  int k = 0;
-  for (layers::Mesh& mesh : layers::terrain_segments(field, options)) {
-    mesh.name = content.name + "/" + std::to_string(k++);
+  std::vector<layers::Mesh> meshes = layers::terrain_segments(field, options);
+  std::vector<GroundWindow> windows;
+  for (layers::Mesh& mesh : meshes) {
     const Rows rows = rows_of(mesh, field);
+    mesh.name = content.name + "/" + std::to_string(windows.size());
     remap(mesh, field, rows);
+    windows.push_back(window_of(field, rows));
+  }
+  std::vector<layers::Texture> textures = painted_ground(content, field, windows);
+  for (std::size_t k = 0; k < meshes.size(); ++k) {
+    layers::Mesh& mesh = meshes[k];
     layers::Material material;
     material.name = mesh.name;
-    if (painter.has_textures()) {
+    if (!textures.empty()) {
       material.base_color = layers::vec3(1);
       material.texture = static_cast<int>(scene.textures.size());
-      scene.textures.push_back(bake_segment(painter, content, field, rows));
+      scene.textures.push_back(std::move(textures[k]));
       scene.textures.back().name = mesh.name;
     }
     scene.parts.push_back({mesh.name, node, static_cast<int>(scene.meshes.size()),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/experiments/variant.h"
 
-#include "sequences/results/frame_lines.h"
+#include "sequences/pipeline/run_effects.h"
 
 namespace talisman::sequences {
 

@@ -27,7 +27,8 @@ std::string lower(std::string s) {
 
 /// The file in `folder` whose name is `name` but for letter case; else one whose stem is cut to the same 8
 /// characters, if possible with the same extension (gl-117 writes .RGB and ships .tga).
-std::string find_in(const fs::path& folder, const std::string& name) {
+std::string find_in(const fs::path& folder, const std::string& name, FileUses& files) {
+  files.list(folder.string());
   const std::string wanted = lower(name),
                     wanted_stem = lower(fs::path(name).stem().string()).substr(0, kShortStem);
   const std::string wanted_extension = lower(fs::path(name).extension().string());
@@ -63,11 +64,12 @@ layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
   return texture;
 }
 
-layers::Texture read_reference(const Import& import, const std::string& reference) {
+layers::Texture read_reference(Import& import, const std::string& reference) {
   if (const aiTexture* embedded = import.from.GetEmbeddedTexture(reference.c_str()))
     return read_embedded(*embedded, reference);
-  const std::string file = find_texture(import.path, reference);
+  const std::string file = find_texture(import.path, reference, import.files);
   if (file.empty()) throw InputError("is missing");
+  import.files.look_for(file);
   layers::Texture texture = read_texture(file);
   texture.name = fs::path(file).filename().string();
   return texture;
@@ -152,16 +154,18 @@ layers::Material import_material(Import& import, const aiMaterial& from) {
 
 }  // namespace
 
-std::string find_texture(const std::string& model_path, const std::string& written) {
+std::string find_texture(const std::string& model_path, const std::string& written, FileUses& files) {
   std::string path = written;
   std::replace(path.begin(), path.end(), '\\', '/');
   const fs::path folder = fs::absolute(model_path).parent_path();
   std::error_code error;
-  for (const fs::path& candidate : {folder / path, fs::path(path)})
+  for (const fs::path& candidate : {folder / path, fs::path(path)}) {
+    files.look_for(candidate.string());
     if (fs::is_regular_file(candidate, error)) return candidate.string();
+  }
   const std::string name = fs::path(path).filename().string();
   for (const fs::path& place : {folder, folder.parent_path() / "textures", folder / "textures"}) {
-    const std::string found = find_in(place, name);
+    const std::string found = find_in(place, name, files);
     if (!found.empty()) return found;
   }
   return {};

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/Importer.hpp>
@@ -203,6 +204,23 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_JoinIdenticalVerti
                             aiProcess_ValidateDataStructure | aiProcess_LimitBoneWeights |
                             aiProcess_GenUVCoords | aiProcess_TransformUVCoords;
 
+/// The file system as assimp sees it, with a record of what it asked for.
+class RecordedFiles : public Assimp::DefaultIOSystem {
+ public:
+  explicit RecordedFiles(FileUses& files) : files_(files) {}
+  bool Exists(const char* file) const override {
+    files_.look_for(file);
+    return DefaultIOSystem::Exists(file);
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    files_.look_for(file);
+    return DefaultIOSystem::Open(file, mode);
+  }
+
+ private:
+  FileUses& files_;
+};
+
 bool is_gltf(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -212,14 +230,17 @@ bool is_gltf(const std::string& path) {
 }  // namespace
 
 ImportedModel read_with_assimp(const std::string& path) {
+  FileUses files;
+  files.add_code();
   Assimp::Importer importer;
   set_options(importer);
+  importer.SetIOHandler(new RecordedFiles(files));  // it belongs to the importer
   const aiScene* from = importer.ReadFile(path, kSteps);
   if (!from || !from->mRootNode) {
     const std::string why = importer.GetErrorString();
     throw InputError("cannot be read as a model: " + (why.empty() ? "no reader takes it" : why));
   }
-  Import import(*from, path, is_gltf(path));
+  Import import(*from, path, is_gltf(path), files);
   import_nodes(import, from->mRootNode, -1, "", 0);
   import_materials(import);
   import_meshes(import);
@@ -228,6 +249,7 @@ ImportedModel read_with_assimp(const std::string& path) {
   import_lights(import);
   import_cameras(import);
   if (import.model.scene.parts.empty()) throw InputError("has no triangles, rule: a model has at least one");
+  import.model.files = files.take();
   return std::move(import.model);
 }
 

@@ -24,6 +24,7 @@
 
 #include "layers/scene.h"
 #include "sequences/files/errors.h"
+#include "sequences/files/file_uses.h"
 
 namespace talisman::sequences {
 
@@ -42,12 +43,14 @@ struct ImportedModel {
   layers::Scene scene;
   std::vector<std::string> warnings;  ///< missing textures and what else could not be kept
   std::vector<LayerTag> layer_tags;
+  std::vector<FileUse> files = {};  ///< all that the reader asked of the file system
 };
 
 /// Reads a model with its materials, textures, node animation, skins, cameras and lights. Throws InputError
 /// that names the file and what is wrong with it (missing, truncated, crashed its reader, took longer than …,
 /// not-a-number positions, indices out of range). Cost: a process start (about 0.4 s, nearly all of it for
-/// loading what the image library depends on) and two copies of the scene.
+/// loading what the image library depends on) and two copies of the scene; less where the program's cache knows
+/// the model (model_cache.h).
 ImportedModel import_model(const std::string& path, const ImportLimits& limits = {});
 
 }  // namespace talisman::sequences

@@ -4,12 +4,9 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <iomanip>
 #include <map>
-#include <ostream>
-#include <sstream>
 
-#include <nlohmann/json.hpp>
+#include "sequences/files/folders.h"
 
 namespace talisman::sequences {
 namespace {
@@ -69,12 +66,6 @@ FrameDiff diff_files(const std::string& name, const std::string& a, const std::s
   return result;
 }
 
-void make_folder(const std::string& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw OutputError(folder + ": cannot be created: " + error.message());
-}
-
 DiffReport diff_folders(const DiffOptions& options) {
   const Frames a = frames_of(options.a), b = frames_of(options.b);
   DiffReport report;
@@ -89,68 +80,6 @@ DiffReport diff_folders(const DiffOptions& options) {
   }
   if (report.frames.empty()) throw InputError("no frame number in common with " + options.b, options.a);
   return report;
-}
-
-/// PSNR without infinity: what a table and JSON show of it.
-nlohmann::json json_of(const Quality& quality, const QualityOptions& options) {
-  nlohmann::json j{{"max_difference", quality.max_difference}, {"changed_pixels", quality.changed_pixels}};
-  j["psnr_db"] = std::isfinite(quality.psnr_db) ? nlohmann::json(quality.psnr_db) : nlohmann::json(nullptr);
-  if (options.ssim) j["ssim"] = quality.ssim;
-  if (options.flip) j["flip"] = quality.flip;
-  return j;
-}
-
-void print_json(const DiffReport& report, const DiffSummary& summary, const DiffOptions& options,
-                std::ostream& out) {
-  nlohmann::json document{
-      {"schema", "talisman.diff/1"}, {"a", options.a}, {"b", options.b}, {"frames", nlohmann::json::array()}};
-  for (const FrameDiff& frame : report.frames) {
-    nlohmann::json line = json_of(frame.quality, options.quality);
-    line["name"] = frame.name;
-    document["frames"].push_back(line);
-  }
-  document["mean"] = json_of(summary.mean, options.quality);
-  document["worst"] = json_of(summary.worst, options.quality);
-  document["only_a"] = report.only_a;
-  document["only_b"] = report.only_b;
-  out << document.dump(2) << "\n";
-}
-
-std::string fixed(double value, int digits) {
-  std::ostringstream out;
-  out << std::fixed << std::setprecision(digits) << value;
-  return out.str();
-}
-
-void print_row(const std::string& name, const Quality& q, const QualityOptions& options,
-               std::size_t name_width, std::ostream& out) {
-  out << std::left << std::setw(static_cast<int>(name_width)) << name << std::right << std::setw(10)
-      << (std::isfinite(q.psnr_db) ? fixed(q.psnr_db, 2) : "identical");
-  out << std::setw(9) << (options.ssim ? fixed(q.ssim, 5) : "-") << std::setw(9)
-      << (options.flip ? fixed(q.flip, 5) : "-");
-  out << std::setw(5) << q.max_difference << std::setw(10) << fixed(100 * q.changed_pixels, 2) << "\n";
-}
-
-void print_missing(const std::vector<std::string>& names, const std::string& there,
-                   const std::string& not_there, std::ostream& out) {
-  for (const std::string& name : names)
-    out << "frame " << name << " is in " << there << " only, not in " << not_there << "\n";
-}
-
-void print_table(const DiffReport& report, const DiffSummary& summary, const DiffOptions& options,
-                 std::ostream& out) {
-  std::size_t width = 7;
-  for (const FrameDiff& frame : report.frames) width = std::max(width, frame.name.size() + 1);
-  out << std::left << std::setw(static_cast<int>(width)) << "frame"
-      << "   psnr_db     ssim     flip  max  changed%\n";
-  for (const FrameDiff& frame : report.frames)
-    print_row(frame.name, frame.quality, options.quality, width, out);
-  if (report.frames.size() > 1) {
-    print_row("mean", summary.mean, options.quality, width, out);
-    print_row("worst", summary.worst, options.quality, width, out);
-  }
-  print_missing(report.only_a, options.a, options.b, out);
-  print_missing(report.only_b, options.b, options.a, out);
 }
 
 }  // namespace
@@ -184,21 +113,9 @@ DiffReport diff(const DiffOptions& options) {
     throw InputError(std::string("is a ") + (folder ? "folder" : "file") + " but " + options.b +
                          " is not, rule: two of a kind",
                      options.a);
-  if (!options.map_dir.empty()) make_folder(options.map_dir);
+  if (!options.map_dir.empty()) create_folder(options.map_dir);
   if (folder) return diff_folders(options);
   return {{diff_files(fs::path(options.a).stem().string(), options.a, options.b, options)}, {}, {}};
-}
-
-int run_diff(const DiffOptions& options, std::ostream& out) {
-  DiffOptions effective = options;
-  effective.quality.flip = options.quality.flip || !options.map_dir.empty();
-  const DiffReport report = diff(effective);
-  const DiffSummary summary = summarize(report.frames);
-  if (options.json)
-    print_json(report, summary, effective, out);
-  else
-    print_table(report, summary, effective, out);
-  return report.partial() ? kPartialResult : kSuccess;
 }
 
 }  // namespace talisman::sequences

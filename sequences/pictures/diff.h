@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// `talisman diff A B`: image error of two frames, or of two folders frame by frame.
+/// Image error of two frames, or of two folders frame by frame (`talisman diff A B`, diff_command.h).
 ///
 /// Of two folders the files NNNN.png (or NNNN.exr; one extension for both folders is not required) are
 /// matched by number; where a folder holds a folder frames/ and no frames itself, that one is meant, so that
 /// two results of `talisman render` can be named directly. A frame without its counterpart is reported and
-/// makes the result partial (exit code 3).
+/// makes the result partial.
 
-#include <iosfwd>
 #include <limits>
 #include <string>
 #include <vector>
@@ -49,8 +48,5 @@ DiffSummary summarize(const std::vector<FrameDiff>& frames);
 /// Reads, compares and, if asked to, writes the maps. Throws InputError: unreadable, a file against a folder,
 /// sizes that differ, no frame in common.
 DiffReport diff(const DiffOptions& options);
-
-/// Prints the report; returns 0, or 3 when frames were missing.
-int run_diff(const DiffOptions& options, std::ostream& out);
 
 }  // namespace talisman::sequences

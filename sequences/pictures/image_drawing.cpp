@@ -3,48 +3,108 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
+
+#include <opencv2/imgproc.hpp>
 
 #include "layers/check.h"
-#include "sequences/pictures/bitmap_font.h"
+#include "sequences/pictures/image_view.h"
 
 namespace talisman::sequences {
 namespace {
 
+using layers::dvec2;
 using layers::ivec2;
 
 constexpr Rgb kPaper{28, 30, 36};  ///< where a magnified picture has no pixels
+constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr int kFractionBits = 6;  ///< of the places of lines: 1/64 px
 
-std::size_t offset_of(const Image8& image, int x, int y) {
-  return 3 * (static_cast<std::size_t>(y) * image.width + x);
+cv::Scalar scalar(Rgb color) { return {double(color[0]), double(color[1]), double(color[2])}; }
+
+double font_scale(int scale) { return scale <= 1 ? 0.38 : 0.3 * scale; }
+
+/// OpenCV would draw a question mark for every byte.
+std::string ascii(const std::string& text) {
+  std::string plain;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x20 && byte < 0x7f) plain += c;
+    if (byte < 0x20 || byte >= 0xc0) plain += '?';  // bytes from 0x80 on continue a sign
+  }
+  return plain;
 }
 
-void set_pixel(Image8& image, int x, int y, const std::uint8_t* rgb) {
-  if (x < 0 || y < 0 || x >= image.width || y >= image.height) return;
-  std::copy_n(rgb, 3, image.rgb.begin() + offset_of(image, x, y));
+struct TextBox {
+  int width, above, below;
+};
+
+TextBox box_of(const std::string& plain, int scale) {
+  int below = 0;
+  const cv::Size size = cv::getTextSize(plain, kFont, font_scale(scale), 1, &below);
+  return {size.width, size.height, below};
+}
+
+cv::Rect inside(const cv::Rect& rect, const Image8& image) {
+  return rect & cv::Rect(0, 0, image.width, image.height);
 }
 
 }  // namespace
 
 Image8 plain_image(int width, int height, Rgb color) {
-  Image8 image{width, height, {}};
-  image.rgb.reserve(offset_of(image, 0, height));
-  for (int i = 0; i < width * height; ++i) image.rgb.insert(image.rgb.end(), color.begin(), color.end());
+  Image8 image{width, height, std::vector<std::uint8_t>(3 * static_cast<std::size_t>(width) * height)};
+  view_of(image) = scalar(color);
   return image;
 }
 
+ivec2 text_size(const std::string& text, int scale) {
+  const TextBox box = box_of(ascii(text), scale);
+  return {box.width, box.above + box.below};
+}
+
 void draw_text(Image8& image, const std::string& text, ivec2 at, Rgb color, int scale) {
-  const std::vector<Glyph> glyphs = glyphs_of(text);
-  for (std::size_t i = 0; i < glyphs.size(); ++i)
-    for (int y = 0; y < kGlyphHeight * scale; ++y)
-      for (int x = 0; x < kGlyphWidth * scale; ++x)
-        if (glyphs[i][y / scale] >> (kGlyphWidth - 1 - x / scale) & 1)
-          set_pixel(image, at.x + static_cast<int>(i) * kGlyphAdvance * scale + x, at.y + y, color.data());
+  if (image.rgb.empty()) return;
+  const std::string plain = ascii(text);
+  cv::putText(view_of(image), plain, {at.x, at.y + box_of(plain, scale).above}, kFont, font_scale(scale),
+              scalar(color), 1, cv::LINE_AA);
+}
+
+void draw_line(Image8& image, dvec2 from, dvec2 to, Rgb color, int scale) {
+  if (image.rgb.empty()) return;
+  const auto fixed_point = [](dvec2 p) {  // OpenCV counts from the centre of the first pixel
+    return cv::Point(static_cast<int>(std::lround((p.x - 0.5) * (1 << kFractionBits))),
+                     static_cast<int>(std::lround((p.y - 0.5) * (1 << kFractionBits))));
+  };
+  const std::vector<cv::Point> ends{fixed_point(from), fixed_point(to)};
+  cv::polylines(view_of(image), ends, false, scalar(color), scale, cv::LINE_AA, kFractionBits);
+}
+
+void tint(Image8& image, const Crop& where, Rgb color, double share) {
+  const cv::Rect rect = inside({where.x, where.y, where.width, where.height}, image);
+  if (rect.empty()) return;
+  cv::Mat part = view_of(image)(rect);
+  cv::addWeighted(part, 1 - share, cv::Mat(rect.size(), CV_8UC3, scalar(color)), share, 0, part);
 }
 
 void paste(Image8& image, const Image8& picture, ivec2 at) {
-  for (int y = 0; y < picture.height; ++y)
-    for (int x = 0; x < picture.width; ++x)
-      set_pixel(image, at.x + x, at.y + y, picture.rgb.data() + offset_of(picture, x, y));
+  const cv::Rect rect = inside({at.x, at.y, picture.width, picture.height}, image);
+  if (rect.empty()) return;
+  view_of(picture)(rect - cv::Point(at.x, at.y)).copyTo(view_of(image)(rect));
+}
+
+Image8 cropped(const Image8& image, const Crop& crop) {
+  Image8 part = plain_image(crop.width, crop.height, {});
+  paste(part, image, {-crop.x, -crop.y});
+  return part;
+}
+
+Image8 enlarged(const Image8& image, int scale) {
+  TALISMAN_CHECK_GE(scale, 1);
+  Image8 large = plain_image(image.width * scale, image.height * scale, {});
+  if (large.rgb.empty()) return large;
+  cv::Mat into = view_of(large);
+  cv::resize(view_of(image), into, into.size(), 0, 0, cv::INTER_NEAREST_EXACT);
+  return large;
 }
 
 Image8 magnified(const Image8& image, ivec2 center, ivec2 size_px, int scale) {
@@ -52,15 +112,26 @@ Image8 magnified(const Image8& image, ivec2 center, ivec2 size_px, int scale) {
   const auto first = [scale](int middle, int shown, int all) {
     return std::clamp(middle - shown / scale / 2, 0, std::max(all - (shown + scale - 1) / scale, 0));
   };
-  const ivec2 corner{first(center.x, size_px.x, image.width), first(center.y, size_px.y, image.height)};
+  Crop crop{first(center.x, size_px.x, image.width), first(center.y, size_px.y, image.height), 0, 0};
+  crop.width = std::min(image.width - crop.x, (size_px.x + scale - 1) / scale);
+  crop.height = std::min(image.height - crop.y, (size_px.y + scale - 1) / scale);
   Image8 part = plain_image(size_px.x, size_px.y, kPaper);
-  for (int y = 0; y < size_px.y; ++y)
-    for (int x = 0; x < size_px.x; ++x) {
-      const ivec2 from{corner.x + x / scale, corner.y + y / scale};
-      if (from.x < image.width && from.y < image.height)
-        set_pixel(part, x, y, image.rgb.data() + offset_of(image, from.x, from.y));
-    }
+  paste(part, enlarged(cropped(image, crop), scale), {0, 0});
   return part;
+}
+
+Image8 difference(const Image8& a, const Image8& b, int gain) {
+  TALISMAN_CHECK(a.width == b.width && a.height == b.height);
+  Image8 result = plain_image(a.width, a.height, {});
+  cv::Mat into = view_of(result);
+  cv::absdiff(view_of(a), view_of(b), into);
+  into.convertTo(into, CV_8U, gain);
+  return result;
+}
+
+int largest_difference(const Image8& a, const Image8& b) {
+  TALISMAN_CHECK(a.width == b.width && a.height == b.height);
+  return static_cast<int>(cv::norm(view_of(a), view_of(b), cv::NORM_INF));
 }
 
 Rgb signed_color(double share) {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "layers/check.h"
-#include "sequences/pictures/bitmap_font.h"
 #include "sequences/pictures/image_drawing.h"
 
 namespace talisman::sequences {
@@ -18,46 +17,14 @@ using layers::dvec3;
 using layers::ivec2;
 using layers::RectI;
 
-constexpr double kLineWidthPx = 2;
-constexpr double kMarginPx = 2;  // lines just outside still reach in
-
-void blend(Image8& image, int x, int y, Rgb color, double coverage) {
-  if (x < 0 || y < 0 || x >= image.width || y >= image.height || coverage <= 0) return;
-  std::uint8_t* pixel = image.rgb.data() + (static_cast<std::size_t>(y) * image.width + x) * 3;
-  for (int c = 0; c < 3; ++c)
-    pixel[c] = static_cast<std::uint8_t>(pixel[c] + (color[c] - pixel[c]) * std::min(coverage, 1.0) + 0.5);
-}
+constexpr int kLargePx = 600;      // from this size on pictures have letters and lines of the larger size
+constexpr double kMarginPx = 2;    // lines just outside still reach in
+constexpr int kLabelMarginPx = 3;  // of the letters in their box
+constexpr Rgb kLabelGround{12, 12, 16};
 
 struct Segment {
   dvec2 a, b;
 };
-
-/// Distance of p to the segment.
-double distance(const Segment& s, dvec2 p) {
-  const dvec2 along{s.b.x - s.a.x, s.b.y - s.a.y}, to_p{p.x - s.a.x, p.y - s.a.y};
-  const double length2 = along.x * along.x + along.y * along.y;
-  const double t = length2 > 0 ? std::clamp((to_p.x * along.x + to_p.y * along.y) / length2, 0.0, 1.0) : 0.0;
-  return std::hypot(to_p.x - t * along.x, to_p.y - t * along.y);
-}
-
-/// Walks along the longer axis and touches only the few pixels beside the line.
-void draw_segment(Image8& image, const Segment& s, Rgb color) {
-  const bool steep = std::fabs(s.b.y - s.a.y) > std::fabs(s.b.x - s.a.x);
-  const auto major = [steep](dvec2 p) { return steep ? p.y : p.x; };
-  const auto minor = [steep](dvec2 p) { return steep ? p.x : p.y; };
-  const double from = std::min(major(s.a), major(s.b)), to = std::max(major(s.a), major(s.b));
-  const double run = major(s.b) - major(s.a);
-  const double slope = run != 0 ? (minor(s.b) - minor(s.a)) / run : 0;
-  for (int i = static_cast<int>(std::floor(from - kLineWidthPx));
-       i <= static_cast<int>(std::ceil(to + kLineWidthPx)); ++i) {
-    const double middle = minor(s.a) + slope * (std::clamp(i + 0.5, from, to) - major(s.a));
-    const int first = static_cast<int>(std::floor(middle - kLineWidthPx));
-    for (int j = first; j <= first + 2 * static_cast<int>(kLineWidthPx) + 1; ++j) {
-      const int x = steep ? j : i, y = steep ? i : j;
-      blend(image, x, y, color, kLineWidthPx / 2 + 0.5 - distance(s, {x + 0.5, y + 0.5}));
-    }
-  }
-}
 
 /// The part of the homogeneous edge a…b that is in front (w > 0) and inside the picture and its margin, in
 /// pixels.
@@ -146,19 +113,15 @@ RectI moved_inside(RectI box, int width, int height) {
 
 class Labels {
  public:
-  explicit Labels(Image8& image)
-      : image_(image), scale_(std::min(image.width, image.height) >= 600 ? 2 : 1) {}
+  Labels(Image8& image, int scale) : image_(image), scale_(scale) {}
 
   void draw(const std::string& text, dvec2 anchor, Rgb color) {
-    const auto glyphs = glyphs_of(text);
-    if (glyphs.empty()) return;
-    const ivec2 size{(static_cast<int>(glyphs.size()) * kGlyphAdvance + 1) * scale_,
-                     (kGlyphHeight + 2) * scale_};
-    const RectI box = free_place(anchor, size);
+    if (text.empty()) return;
+    const ivec2 letters = text_size(text, scale_);
+    const RectI box = free_place(anchor, {letters.x + 2 * kLabelMarginPx, letters.y + kLabelMarginPx});
     taken_.push_back(box);
-    for (int y = box.y0; y < box.y1; ++y)
-      for (int x = box.x0; x < box.x1; ++x) blend(image_, x, y, {12, 12, 16}, 0.75);
-    draw_text(image_, text, {box.x0 + scale_, box.y0 + scale_}, color, scale_);
+    tint(image_, {box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0}, kLabelGround, 0.75);
+    draw_text(image_, text, {box.x0 + kLabelMarginPx, box.y0 + kLabelMarginPx}, color, scale_);
   }
 
  private:
@@ -203,13 +166,15 @@ void draw_outlines(Image8& image, const std::vector<Outline>& outlines, int olde
   TALISMAN_CHECK_EQ(image.rgb.size(), static_cast<std::size_t>(image.width) * image.height * 3);
   TALISMAN_CHECK_GE(oldest_frames, 1);
   if (image.rgb.empty()) return;
+  const int scale = std::min(image.width, image.height) >= kLargePx ? 2 : 1;
   std::vector<std::optional<dvec2>> anchors;
   for (const Outline& outline : outlines) {
     const auto edges = visible_edges(outline, image.width, image.height);
-    for (const Segment& edge : edges) draw_segment(image, edge, age_color(outline.age_frames, oldest_frames));
+    for (const Segment& edge : edges)
+      draw_line(image, edge.a, edge.b, age_color(outline.age_frames, oldest_frames), scale);
     anchors.push_back(label_anchor(outline, edges, image.width, image.height));
   }
-  Labels labels(image);
+  Labels labels(image, scale);
   for (std::size_t i = 0; i < outlines.size(); ++i)
     if (anchors[i])
       labels.draw(outlines[i].label, *anchors[i], age_color(outlines[i].age_frames, oldest_frames));

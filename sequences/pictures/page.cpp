@@ -160,11 +160,4 @@ std::string html(const Page& page, const std::string& dir) {
   return text + "</body>\n</html>\n";
 }
 
-std::string fixed(double value, int digits) {
-  if (!std::isfinite(value)) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
 }  // namespace talisman::sequences

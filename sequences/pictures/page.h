@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sequences/files/errors.h"
+#include "sequences/files/number_text.h"
 
 namespace talisman::sequences {
 
@@ -44,8 +45,5 @@ std::string markdown(const Page& page);
 
 /// Figures are read from `dir` and put into the page. Throws OutputError when one is not there.
 std::string html(const Page& page, const std::string& dir);
-
-/// `value` with `digits` after the point; "-" where it is not finite.
-std::string fixed(double value, int digits);
 
 }  // namespace talisman::sequences

@@ -6,23 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "sequences/files/image_io.h"
+#include "sequences/pictures/image_drawing.h"
 
 namespace talisman::sequences {
-
-/// A rectangle of a picture; pixels.
-struct Crop {
-  int x = 0, y = 0, width = 0, height = 0;
-};
-
-/// The part of `image` in `crop`, which lies inside it.
-Image8 cropped(const Image8& image, const Crop& crop);
-
-/// |a - b| · gain per channel, clamped. Same sizes.
-Image8 difference(const Image8& a, const Image8& b, int gain);
-
-/// Largest channel difference. Same sizes.
-int largest_difference(const Image8& a, const Image8& b);
 
 /// Where `others` differ most from `truth`: of all rectangles of the given size (made smaller where the
 /// picture is), the one with the largest sum of squared differences; the first of equal ones. Same sizes.

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/compression_json.h"
 
-#include <cmath>
+#include "sequences/files/number_text.h"
 
 namespace talisman::sequences {
 
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 /// Calls visit(name, value) for every sum of the report, named once for writing and reading.
 template <typename Report, typename Visit>

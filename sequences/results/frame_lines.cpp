@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "regulator/profile.h"
+#include "sequences/files/number_text.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/run_effects.h"
 #include "sequences/results/compression_json.h"
@@ -18,8 +19,6 @@ namespace talisman::sequences {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number_or_null(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json json_of(const Quality& q) {
   return {{"psnr_db", number_or_null(q.psnr_db)},

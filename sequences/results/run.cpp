@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/folders.h"
 #include "sequences/files/frame_writer.h"
 #include "sequences/files/line_file.h"
 #include "sequences/files/video.h"
@@ -82,12 +83,6 @@ std::string first_difference(const Json& before, const Json& now) {
     if (!before.contains(key) || before[key] != value)
       return key + " was " + (before.contains(key) ? before[key].dump() : "absent") + ", is " + value.dump();
   return {};
-}
-
-void make_folder(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw OutputError(path + ": folder cannot be made: " + error.message());
 }
 
 /// Lines of frames that an earlier run completed, by frame.
@@ -163,9 +158,9 @@ class Runner {
       : options_(options),
         pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)),
         state_(pipeline_) {
-    make_folder(options.out);
-    if (!options.plan_only) make_folder(options.out + "/frames");
-    if (options.separate) make_folder(options.out + "/separate");
+    create_folder(options.out);
+    if (!options.plan_only) create_folder(options.out + "/frames");
+    if (options.separate) create_folder(options.out + "/separate");
     const Json identity = identity_of(sequence, settings, options);
     if (options.resume) kept_ = complete_frames(options, identity);
     if (kept_.empty()) remove_old_results(options);

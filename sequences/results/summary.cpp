@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/files/number_text.h"
 #include "sequences/results/compression_json.h"
 #include "sequences/results/frame_lines.h"
 
@@ -39,9 +40,7 @@ MeanQuality mean_quality(const Summary& summary, Quality FrameQuality::*which) {
 }
 
 Json json_of(const MeanQuality& q) {
-  return {{"psnr_db", std::isfinite(q.psnr_db()) ? Json(q.psnr_db()) : Json(nullptr)},
-          {"ssim", q.ssim},
-          {"flip", q.flip}};
+  return {{"psnr_db", number_or_null(q.psnr_db())}, {"ssim", q.ssim}, {"flip", q.flip}};
 }
 
 bool has_quality(const Summary& s) { return !s.frames.empty() && s.frames.front().quality.has_value(); }
@@ -52,9 +51,7 @@ std::string format(const char* pattern, auto... values) {
   return text;
 }
 
-std::string percent(double part, double whole) {
-  return whole > 0 ? format("%.1f %%", 100 * part / whole) : "-";
-}
+std::string percent(double part, double whole) { return whole > 0 ? percent_of(part, whole) + " %" : "-"; }
 
 /// "123 k", "4.56 M"
 std::string magnitude(double value) {

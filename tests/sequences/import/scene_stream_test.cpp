@@ -35,6 +35,8 @@ ImportedModel full_model() {
   model.scene.tracks.push_back({last, layers::SpinTrack{{1, 0, 0}, 2}});
   model.warnings = {"one warning", ""};
   model.layer_tags = {{last, "hull"}};
+  model.files = {{FileUse::Kind::Content, "ship.obj", 12, 34, true},
+                 {FileUse::Kind::Names, "/tmp", 0, 5, false}};
   return model;
 }
 
@@ -97,7 +99,7 @@ TEST(SceneStream, BytesTooManyAreRefused) {
 TEST(SceneStream, ForeignBytesAndOtherVersionsAreRefused) {
   auto bytes = bytes_from_scene({});
   bytes[4] ^= 1;
-  EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("version 3, rule: 2"));
+  EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("version 2, rule: 3"));
   bytes[0] ^= 1;
   EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("magic"));
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/pictures/diff.h"
+#include "sequences/commands/diff_command.h"
 
 #include <cmath>
 #include <cstdlib>
