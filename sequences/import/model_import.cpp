@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "sequences/files/program_folder.h"
+#include "sequences/import/scene_stream.h"
 
 extern char** environ;
 
