@@ -110,24 +110,24 @@ regulator::RegulatorOptions read_regulator(YamlMap map) {
   if (const YamlValue* policy = map.find("policy"))
     options.policy = regulator::kAllPolicies[policy->choice(names)];
   map.read("hold_frames", options.hold_frames, 1, kMaxFrames);
-  map.read("lookahead_frames", options.lookahead_frames, 0, kMaxFrames);
-  read_budget(map, "budget_polygons", options.budget_polygons);
-  read_budget(map, "budget_pixels", options.budget_pixels);
-  read_budget(map, "budget_chunks", options.budget_chunks);
-  map.read("budget_ms", options.budget_ms, kNotNegative);
-  map.read("min_resolution", options.min_resolution, {0, 1, true});
+  map.read("lookahead_frames", options.lookahead.frames, 0, kMaxFrames);
+  read_budget(map, "budget_polygons", options.budget.polygons);
+  read_budget(map, "budget_pixels", options.budget.pixels);
+  read_budget(map, "budget_chunks", options.budget.chunks);
+  map.read("budget_ms", options.budget.ms, kNotNegative);
+  map.read("min_resolution", options.budget.min_resolution, {0, 1, true});
   if (const YamlValue* predict = map.find("predict"))
-    options.predict = regulator::kAllPredictions[predict->choice({"known", "linear"})];
-  map.read("cutoff_px", options.cutoff_px, kNotNegative);
-  map.read("geometric_px", options.geometric_px, kNotNegative);
-  read_threshold(map, "magnification", options.magnification, {1, 1e6});
-  read_threshold(map, "minification", options.minification, {0, 1});
-  read_threshold(map, "anisotropy", options.anisotropy, {1, 1e6});
-  map.read("uncovered_px", options.uncovered_px, kAnyNumber);
-  map.read("turned_px", options.turned_px, kNotNegative);
-  map.read("photometric", options.photometric, kNotNegative);
+    options.lookahead.predict = regulator::kAllPredictions[predict->choice({"known", "linear"})];
+  map.read("cutoff_px", options.budget.cutoff_px, kNotNegative);
+  map.read("geometric_px", options.thresholds.geometric_px, kNotNegative);
+  read_threshold(map, "magnification", options.thresholds.magnification, {1, 1e6});
+  read_threshold(map, "minification", options.thresholds.minification, {0, 1});
+  read_threshold(map, "anisotropy", options.thresholds.anisotropy, {1, 1e6});
+  map.read("uncovered_px", options.thresholds.uncovered_px, kAnyNumber);
+  map.read("turned_px", options.thresholds.turned_px, kNotNegative);
+  map.read("photometric", options.thresholds.photometric, kNotNegative);
   if (const YamlValue* angle = map.find("light_angle_deg"))
-    options.light_angle_rad = glm::radians(angle->number({0, 180}));
+    options.thresholds.light_angle_rad = glm::radians(angle->number({0, 180}));
   map.read("color_warp", options.color_warp);
   map.finish();
   return options;

@@ -2,7 +2,6 @@
 #include "sequences/results/run.h"
 
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -12,8 +11,10 @@
 
 #include "sequences/files/frame_writer.h"
 #include "sequences/files/line_file.h"
+#include "sequences/files/temporary_files.h"
 #include "sequences/pictures/overlay.h"
 #include "sequences/results/separate_pictures.h"
+#include "sequences/results/settings_json.h"
 
 namespace talisman::sequences {
 
@@ -41,35 +42,16 @@ std::string frame_path(const RunOptions& options, int frame) {
 }
 
 /// Everything that the bytes of the results depend on. A run can be resumed only with the same.
-Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& o) {
-  const regulator::RegulatorOptions& r = s.regulator;
-  return {{"schema", "talisman.run/1"},
-          {"sequence", sequence.name},
-          {"frames", {o.first_frame, o.last_frame}},
-          {"display_px", {s.view.display_px.x, s.view.display_px.y}},
-          {"policy", regulator::name(r.policy)},
-          {"geometric_px", r.geometric_px},
-          {"hold_frames", r.hold_frames},
-          {"lookahead", {r.lookahead_frames, s.frames}},
-          {"predict", regulator::name(r.predict)},
-          {"budget",
-           {r.budget_polygons, r.budget_pixels, r.budget_chunks,
-            std::isfinite(r.budget_ms) ? Json(r.budget_ms) : Json(nullptr), r.cutoff_px, r.min_resolution}},
-          {"budget_gap", s.budget_gap},
-          {"sampling", {r.magnification, r.minification, r.anisotropy}},
-          {"uncovered_px", r.uncovered_px},
-          {"warp", warp::name(s.curve)},
-          {"bound", static_cast<int>(s.bound)},
-          {"cycles", s.cycles == Cycles::Merge ? "merge" : "keep"},
-          {"compositor", s.compositor == Compositor::Talisman ? "talisman" : "extended"},
-          {"extents", {s.extents.expected_reuse_frames, s.extents.max_growth, s.view.clip_margin}},
-          {"placement",
-           {s.placement.slab_directions, s.placement.min_rotation_gain, s.placement.resolution_scale}},
-          {"shading", static_cast<int>(s.render.shading)},
-          {"compression", s.compression ? s.compression->quality : 0},
-          {"format", static_cast<int>(o.format)},
-          {"overlay", o.overlay},
-          {"quality", o.quality}};
+Json identity_of(const Sequence& sequence, const Settings& settings, const RunOptions& o) {
+  Json json = {{"schema", "talisman.run/2"},
+               {"sequence", sequence.name},
+               {"frames", {o.first_frame, o.last_frame}},
+               {"format", static_cast<int>(o.format)},
+               {"overlay", o.overlay},
+               {"separate", o.separate},
+               {"quality", o.quality}};
+  json.update(json_of(settings));
+  return json;
 }
 
 /// First entry in which two identities differ, as "geometric_px was 4, is 8"; empty if they are the same.
@@ -160,6 +142,7 @@ class Runner {
     make_folder(options.out);
     if (!options.plan_only) make_folder(options.out + "/frames");
     if (options.separate) make_folder(options.out + "/separate");
+    for (const char* folder : {"", "/frames", "/separate"}) remove_abandoned_files(options.out + folder);
     const Json identity = identity_of(sequence, settings, options);
     if (options.resume) kept_ = complete_frames(options, identity);
     if (kept_.empty()) remove_old_results(options);

@@ -25,7 +25,7 @@ struct Film {
 
   explicit Film(Policy policy, double geometric_px = 4) {
     settings.regulator.policy = policy;
-    settings.regulator.geometric_px = geometric_px;
+    settings.regulator.thresholds.geometric_px = geometric_px;
     settings.view.display_px = {200, 150};
     settings.frames = kFrames;
   }
