@@ -189,12 +189,13 @@ void read_settings(YamlMap& map, Sequence& sequence) {
 }
 
 /// A variant says `extends: FILE` and then only what is different at the top level.
-YamlMap read_with_base(const std::string& file, int depth) {
+YamlMap read_with_base(const std::string& file, int depth, std::vector<std::string>& files) {
   YamlMap own = read_yaml_file(file);
+  files.push_back(file);
   const YamlValue* base = own.find("extends");
   if (!base) return own;
   if (depth >= kMaxDepthOfExtends) base->fail("at most 8 files that extend each other, never in a circle");
-  YamlMap merged = read_with_base(resolve_asset(base->text(), file, base->line()), depth + 1);
+  YamlMap merged = read_with_base(resolve_asset(base->text(), file, base->line()), depth + 1, files);
   merged.replace_by(own);
   return merged;
 }
@@ -202,9 +203,9 @@ YamlMap read_with_base(const std::string& file, int depth) {
 }  // namespace
 
 SequenceFile read_sequence_file(const std::string& file) {
-  YamlMap map = read_with_base(file, 0);
-  map.find("extends");
   SequenceFile result;
+  YamlMap map = read_with_base(file, 0, result.settings.content_files);
+  map.find("extends");
   result.settings.file = file;
   result.settings.name = std::filesystem::path(file).stem().string();
   map.read("name", result.settings.name);

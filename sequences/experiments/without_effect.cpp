@@ -12,7 +12,7 @@
 #include "chunker/texture.h"
 #include "layers/check.h"
 #include "layers/shading.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 namespace {

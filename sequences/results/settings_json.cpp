@@ -61,9 +61,7 @@ Json value_of(chunker::TextureFilter filter) {
 }
 
 Json value_of(Cycles cycles) { return cycles == Cycles::Merge ? "merge" : "keep"; }
-Json value_of(Compositor compositor) {
-  return compositor == Compositor::Talisman ? "talisman" : "extended";
-}
+Json value_of(Compositor compositor) { return compositor == Compositor::Talisman ? "talisman" : "extended"; }
 
 Json value_of(const std::optional<chunker::CompressionOptions>& compression) {
   if (!compression) return nullptr;

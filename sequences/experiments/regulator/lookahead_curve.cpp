@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 namespace {

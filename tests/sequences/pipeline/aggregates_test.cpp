@@ -10,7 +10,7 @@
 #include "sequences/commands/inspect_order.h"
 #include "sequences/commands/options.h"
 #include "sequences/content/layer_pairs.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/sequences/playback.h"
 #include "tests/sequences/temporary_folder.h"
 

@@ -7,7 +7,7 @@
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/motion_blur.h"
 #include "sequences/pipeline/step.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/settings_json.h"
 
-#include <set>
-#include <type_traits>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "sequences/results/settings_fields.h"
+#include "tests/sequences/results/changed_settings.h"
 
 namespace talisman::sequences {
 namespace {
@@ -36,20 +34,6 @@ constexpr int kSettings = members_of<Settings>() - 6  // regulator, fit, view, e
                           members_of<layers::View>() + members_of<layers::ExtentOptions>() +
                           members_of<layers::PlacementOptions>() + members_of<chunker::RenderOptions>();
 
-void change(bool& value) { value = !value; }
-void change(layers::ivec2& value) { value.y += 1; }
-void change(layers::dvec2& value) { value.y += 1; }
-void change(std::optional<chunker::CompressionOptions>& value) { value.emplace().quality = 7; }
-void change(std::vector<layers::ExplicitPair>& value) { value.push_back({0, 1}); }
-void change(std::int64_t& value) { value -= 1; }
-template <typename T>
-void change(T& value) {
-  if constexpr (std::is_enum_v<T>)
-    value = static_cast<T>(value == T{} ? 1 : static_cast<int>(value) - 1);
-  else
-    value = std::isfinite(static_cast<double>(value)) ? value + 1 : T(1);
-}
-
 int count(const Settings& settings) {
   int n = 0;
   for_each_setting(settings, [&n](const char*, const auto&) { ++n; });
@@ -73,18 +57,13 @@ TEST(SettingsJson, NamesEveryMemberOfTheSettings) {
 
 TEST(SettingsJson, EveryFieldChangesItsOwnEntryAlone) {
   const nlohmann::ordered_json before = json_of(Settings{});
-  for (int changed = 0; changed < kSettings; ++changed) {
-    Settings settings;
-    std::string of;
-    int k = 0;
-    for_each_setting(settings, [&](const char* name, auto& value) {
-      if (k++ != changed) return;
-      of = name;
-      change(value);
-    });
-    const nlohmann::ordered_json after = json_of(settings);
-    for (const auto& [name, value] : after.items()) EXPECT_EQ(value != before[name], name == of) << name;
+  for (int k = 0; k < kSettings; ++k) {
+    const ChangedSettings changed = changed_settings(k);
+    const nlohmann::ordered_json after = json_of(changed.settings);
+    for (const auto& [name, value] : after.items())
+      EXPECT_EQ(value != before[name], name == changed.field) << name;
   }
+  EXPECT_EQ(changed_settings(kSettings).field, "");
 }
 
 TEST(SettingsJson, ReadsAsUsersWriteIt) {
