@@ -5,7 +5,7 @@
 #include <iterator>
 #include <ostream>
 
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/results/columns_doc.h"
 #include "sequences/results/csv_export.h"
 

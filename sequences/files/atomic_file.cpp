@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequences/files/atomic_file.h"
+
 #include <fcntl.h>
 #include <unistd.h>
 #include <cerrno>
@@ -6,7 +8,6 @@
 #include <exception>
 #include <string_view>
 
-#include "sequences/files/image_io.h"
 #include "sequences/files/temporary_files.h"
 
 namespace talisman::sequences {

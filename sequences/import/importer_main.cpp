@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/scene_stream.h"
 
 namespace {
 

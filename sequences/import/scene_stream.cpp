@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequences/import/scene_stream.h"
+
 #include <algorithm>
 #include <cstring>
 #include <type_traits>
-
-#include "sequences/import/model_import.h"
 
 namespace talisman::sequences {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequences/import/texture_io.h"
+
 #include <cstdint>
 #include <memory>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
-
-#include "sequences/import/model_import.h"
 
 namespace talisman::sequences {
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/results/column_tables.h"
 
 namespace talisman::sequences {

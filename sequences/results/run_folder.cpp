@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/files/atomic_file.h"
 #include "sequences/files/line_file.h"
 #include "sequences/files/temporary_files.h"
 #include "sequences/results/run_identity.h"
