@@ -42,8 +42,11 @@ Columns counters() {
               [](auto& l) -> auto& { return l.reuses; }),
           counted(
               "layers_assessed", "layers", "in view with an old sprite: fitted and judged",
-              [](auto& l) -> auto& { return l.layers_assessed; }),
-          counted(
+              [](auto& l) -> auto& { return l.layers_assessed; })};
+}
+
+Columns work() {
+  return {counted(
               "shadow_maps_drawn", "maps", "as planned",
               [](auto& l) -> auto& { return l.passes.shadow_maps_drawn; }),
           counted(
@@ -63,8 +66,11 @@ Columns counters() {
               [](auto& l) -> auto& { return l.pixels.rendered; }),
           counted(
               "pixels_reference", "texels", "the same for all layers in view",
-              [](auto& l) -> auto& { return l.pixels.reference; }),
-          measured(
+              [](auto& l) -> auto& { return l.pixels.reference; })};
+}
+
+Columns drawing() {
+  return {measured(
               "pixels_filled", "texels", "writes by the renderer",
               [](auto& l) -> auto& { return l.pixels.filled; }),
           measured(
@@ -204,8 +210,9 @@ const ColumnTable<FrameLine>& frame_table() {
   static const ColumnTable<FrameLine> table = [] {
     ColumnTable<FrameLine> t{"frames", "talisman.frame/1", {}, groups()};
     for (const Columns& part :
-         {counters(), compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }),
-          visibility(), budget_gap(),
+         {counters(), work(), drawing(),
+          compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), visibility(),
+          budget_gap(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(
