@@ -11,6 +11,7 @@
 #include <CLI/CLI.hpp>
 
 #include "sequences/commands/accuracy.h"
+#include "sequences/commands/export_command.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/inspect_order.h"
 #include "sequences/commands/options.h"
@@ -77,6 +78,8 @@ struct Commands {
   DiffOptions diff;
   WarpsOptions warps;
   AccuracyOptions accuracy;
+  ExportOptions exported;
+  std::string documented;
   int exit_code = kSuccess;
 
   Commands() {
@@ -108,7 +111,20 @@ struct Commands {
     diff_command->add_flag("--json", diff.json, "print JSON");
     diff_command->add_option("--map", diff.map_dir, "write FLIP error maps into this folder");
     diff_command->callback([this] { exit_code = run_diff(diff, std::cout); });
+    add_exports();
     add_experiments();
+  }
+
+  void add_exports() {
+    CLI::App* command = app.add_subcommand("export", "the results of a run in other forms");
+    command->add_option("folder", exported.folder, "result folder of a render or plan")->required();
+    command->add_flag("--csv", exported.csv, "flat tables: decisions, frames, timing, layers, effects, run");
+    command->callback([this] { exit_code = run_export(exported, std::cout); });
+
+    CLI::App* columns = app.add_subcommand("columns", "make the column tables of a Markdown file anew");
+    columns->group("");  // for those who change a column; not in --help
+    columns->add_option("file", documented)->required();
+    columns->callback([this] { exit_code = update_column_tables(documented); });
   }
 
   void add_experiments() {

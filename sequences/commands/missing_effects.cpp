@@ -5,7 +5,7 @@
 
 #include "layers/built_effects.h"
 #include "sequences/files/errors.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 

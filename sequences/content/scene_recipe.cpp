@@ -214,7 +214,10 @@ GroundClass read_class(YamlMap map) {
 
 void read_classes(YamlMap map, TerrainContent& terrain) {
   terrain.classes_file = asset(map.need("file"));
-  if (const YamlValue* list = map.find("list")) terrain.classes = read_ground_classes(asset(*list));
+  if (const YamlValue* list = map.find("list")) {
+    terrain.list_file = asset(*list);
+    terrain.classes = read_ground_classes(terrain.list_file);
+  }
   if (const YamlValue* textures = map.find("textures"))
     for (const YamlValue& item : textures->items()) terrain.classes.push_back(read_class(item.map()));
   if (terrain.classes.empty()) map.self().fail("has the key 'list' or 'textures'");

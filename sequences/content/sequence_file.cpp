@@ -110,24 +110,24 @@ regulator::RegulatorOptions read_regulator(YamlMap map) {
   if (const YamlValue* policy = map.find("policy"))
     options.policy = regulator::kAllPolicies[policy->choice(names)];
   map.read("hold_frames", options.hold_frames, 1, kMaxFrames);
-  map.read("lookahead_frames", options.lookahead_frames, 0, kMaxFrames);
-  read_budget(map, "budget_polygons", options.budget_polygons);
-  read_budget(map, "budget_pixels", options.budget_pixels);
-  read_budget(map, "budget_chunks", options.budget_chunks);
-  map.read("budget_ms", options.budget_ms, kNotNegative);
-  map.read("min_resolution", options.min_resolution, {0, 1, true});
+  map.read("lookahead_frames", options.lookahead.frames, 0, kMaxFrames);
+  read_budget(map, "budget_polygons", options.budget.polygons);
+  read_budget(map, "budget_pixels", options.budget.pixels);
+  read_budget(map, "budget_chunks", options.budget.chunks);
+  map.read("budget_ms", options.budget.ms, kNotNegative);
+  map.read("min_resolution", options.budget.min_resolution, {0, 1, true});
   if (const YamlValue* predict = map.find("predict"))
-    options.predict = regulator::kAllPredictions[predict->choice({"known", "linear"})];
-  map.read("cutoff_px", options.cutoff_px, kNotNegative);
-  map.read("geometric_px", options.geometric_px, kNotNegative);
-  read_threshold(map, "magnification", options.magnification, {1, 1e6});
-  read_threshold(map, "minification", options.minification, {0, 1});
-  read_threshold(map, "anisotropy", options.anisotropy, {1, 1e6});
-  map.read("uncovered_px", options.uncovered_px, kAnyNumber);
-  map.read("turned_px", options.turned_px, kNotNegative);
-  map.read("photometric", options.photometric, kNotNegative);
+    options.lookahead.predict = regulator::kAllPredictions[predict->choice({"known", "linear"})];
+  map.read("cutoff_px", options.budget.cutoff_px, kNotNegative);
+  map.read("geometric_px", options.thresholds.geometric_px, kNotNegative);
+  read_threshold(map, "magnification", options.thresholds.magnification, {1, 1e6});
+  read_threshold(map, "minification", options.thresholds.minification, {0, 1});
+  read_threshold(map, "anisotropy", options.thresholds.anisotropy, {1, 1e6});
+  map.read("uncovered_px", options.thresholds.uncovered_px, kAnyNumber);
+  map.read("turned_px", options.thresholds.turned_px, kNotNegative);
+  map.read("photometric", options.thresholds.photometric, kNotNegative);
   if (const YamlValue* angle = map.find("light_angle_deg"))
-    options.light_angle_rad = glm::radians(angle->number({0, 180}));
+    options.thresholds.light_angle_rad = glm::radians(angle->number({0, 180}));
   map.read("color_warp", options.color_warp);
   map.finish();
   return options;
@@ -189,12 +189,13 @@ void read_settings(YamlMap& map, Sequence& sequence) {
 }
 
 /// A variant says `extends: FILE` and then only what is different at the top level.
-YamlMap read_with_base(const std::string& file, int depth) {
+YamlMap read_with_base(const std::string& file, int depth, std::vector<std::string>& files) {
   YamlMap own = read_yaml_file(file);
+  files.push_back(file);
   const YamlValue* base = own.find("extends");
   if (!base) return own;
   if (depth >= kMaxDepthOfExtends) base->fail("at most 8 files that extend each other, never in a circle");
-  YamlMap merged = read_with_base(resolve_asset(base->text(), file, base->line()), depth + 1);
+  YamlMap merged = read_with_base(resolve_asset(base->text(), file, base->line()), depth + 1, files);
   merged.replace_by(own);
   return merged;
 }
@@ -202,9 +203,9 @@ YamlMap read_with_base(const std::string& file, int depth) {
 }  // namespace
 
 SequenceFile read_sequence_file(const std::string& file) {
-  YamlMap map = read_with_base(file, 0);
-  map.find("extends");
   SequenceFile result;
+  YamlMap map = read_with_base(file, 0, result.settings.content_files);
+  map.find("extends");
   result.settings.file = file;
   result.settings.name = std::filesystem::path(file).stem().string();
   map.read("name", result.settings.name);

@@ -63,12 +63,13 @@ layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
   return texture;
 }
 
-layers::Texture read_reference(const Import& import, const std::string& reference) {
+layers::Texture read_reference(Import& import, const std::string& reference) {
   if (const aiTexture* embedded = import.from.GetEmbeddedTexture(reference.c_str()))
     return read_embedded(*embedded, reference);
   const std::string file = find_texture(import.path, reference);
   if (file.empty()) throw InputError("is missing");
   layers::Texture texture = read_texture(file);
+  import.model.files.push_back(file);
   texture.name = fs::path(file).filename().string();
   return texture;
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/Importer.hpp>
@@ -203,6 +204,20 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_JoinIdenticalVerti
                             aiProcess_ValidateDataStructure | aiProcess_LimitBoneWeights |
                             aiProcess_GenUVCoords | aiProcess_TransformUVCoords;
 
+/// Notes which files assimp opens: the model, its material libraries and buffers.
+class NotingFiles : public Assimp::DefaultIOSystem {
+ public:
+  explicit NotingFiles(std::vector<std::string>& files) : files_(files) {}
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    Assimp::IOStream* stream = DefaultIOSystem::Open(file, mode);
+    if (stream && std::find(files_.begin(), files_.end(), file) == files_.end()) files_.emplace_back(file);
+    return stream;
+  }
+
+ private:
+  std::vector<std::string>& files_;
+};
+
 bool is_gltf(const std::string& path) {
   std::string extension = std::filesystem::path(path).extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -212,14 +227,17 @@ bool is_gltf(const std::string& path) {
 }  // namespace
 
 ImportedModel read_with_assimp(const std::string& path) {
+  std::vector<std::string> files;
   Assimp::Importer importer;
   set_options(importer);
+  importer.SetIOHandler(new NotingFiles(files));  // the importer deletes it
   const aiScene* from = importer.ReadFile(path, kSteps);
   if (!from || !from->mRootNode) {
     const std::string why = importer.GetErrorString();
     throw InputError("cannot be read as a model: " + (why.empty() ? "no reader takes it" : why));
   }
   Import import(*from, path, is_gltf(path));
+  import.model.files = files;
   import_nodes(import, from->mRootNode, -1, "", 0);
   import_materials(import);
   import_meshes(import);

@@ -42,6 +42,7 @@ struct ImportedModel {
   layers::Scene scene;
   std::vector<std::string> warnings;  ///< missing textures and what else could not be kept
   std::vector<LayerTag> layer_tags;
+  std::vector<std::string> files;  ///< that were read for it: the model itself, parts of it, its textures
 };
 
 /// Reads a model with its materials, textures, node animation, skins, cameras and lights. Throws InputError

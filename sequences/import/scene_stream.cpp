@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::uint32_t kMagic =
     0x4d534c54;  // "TLSM"; both ends run on one machine, so bytes are in its order
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kVersion = 3;
 
 [[noreturn]] void fail(const std::string& what) { throw InputError("scene stream: " + what); }
 
@@ -287,6 +287,7 @@ void fields(Stream& s, T& model) {
   fields(s, model.scene);
   s.list(model.warnings);
   s.list(model.layer_tags);
+  s.list(model.files);
 }
 
 template <typename T>

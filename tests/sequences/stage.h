@@ -24,12 +24,12 @@ struct Stage {
 
   Stage& policy(regulator::Policy policy, double geometric_px = 4) {
     settings.regulator.policy = policy;
-    settings.regulator.geometric_px = geometric_px;
+    settings.regulator.thresholds.geometric_px = geometric_px;
     return *this;
   }
 
   Stage& lookahead(int frames) {
-    settings.regulator.lookahead_frames = frames;
+    settings.regulator.lookahead.frames = frames;
     return *this;
   }
 

@@ -14,7 +14,7 @@
 #include "sequences/pictures/diff.h"
 #include "sequences/pictures/quality.h"
 #include "sequences/pipeline/step.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 

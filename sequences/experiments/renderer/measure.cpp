@@ -74,8 +74,8 @@ class VariantRun {
   void count(const FrameReport& report) {
     const FrameLine line = line_of(with_aggregates(pipeline_, *state_), report);
     measured_.renders += line.renders;
-    measured_.polygons += line.polygons_rendered;
-    measured_.pixels += line.pixels_rendered;
+    measured_.polygons += line.polygons.rendered;
+    measured_.pixels += line.pixels.rendered;
     measured_.counters += report.render;
     measured_.passes += report.shade;
     measured_.modelled_ms += line.modelled_ms;

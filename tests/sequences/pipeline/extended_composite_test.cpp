@@ -12,7 +12,7 @@
 
 #include "sequences/commands/options.h"
 #include "sequences/pipeline/resolved_cycles.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {

@@ -6,7 +6,7 @@
 
 #include "layers/layer.h"
 #include "sequences/pipeline/aggregates.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/support/fleet.h"
 #include "tests/support/scenes.h"
 

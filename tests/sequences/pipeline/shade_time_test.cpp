@@ -249,7 +249,7 @@ Displacement displacement(const Room& room, double geometric_px, int frames) {
   const layers::LayerSet set = room.layers();
   Settings settings;
   settings.view.display_px = {160, 120};
-  settings.regulator.geometric_px = geometric_px;
+  settings.regulator.thresholds.geometric_px = geometric_px;
   settings.frames = frames;
   const Pipeline pipeline(room.scene, set, settings);
   PipelineState state(pipeline);

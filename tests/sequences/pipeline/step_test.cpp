@@ -59,7 +59,7 @@ std::vector<Stage> fiducial_policies() {
   std::vector<Stage> stages;
   for (const Policy policy : {Policy::Threshold, Policy::Budget, Policy::Lookahead, Policy::Oracle}) {
     stages.push_back(Stage(tests::moving_scene()).policy(policy, 2).lookahead(6));
-    stages.back().settings.regulator.budget_pixels = 12'000;
+    stages.back().settings.regulator.budget.pixels = 12'000;
     stages.back().settings.frames = kFrames;
   }
   return stages;
@@ -219,7 +219,7 @@ TEST(StepLookahead, MinimumRateIsKeptWhereADrawingWouldChangeAnything) {
 TEST(StepBudget, NoFrameSpendsMoreThanItsBudgetExceptOnFirstAppearances) {
   for (const std::int64_t pixels : {0, 3000, 12'000}) {
     Stage stage = Stage(tests::moving_scene()).policy(Policy::Budget);
-    stage.settings.regulator.budget_pixels = pixels;
+    stage.settings.regulator.budget.pixels = pixels;
     int deferred = 0, within = 0;
     for (const FrameReport& report : stage.run(40, false)) {
       std::int64_t spent = 0, on_first_appearances = 0;
@@ -238,7 +238,7 @@ TEST(StepBudget, NoFrameSpendsMoreThanItsBudgetExceptOnFirstAppearances) {
 
 TEST(StepBudget, UnlimitedBudgetWithoutCutOffLeavesNoError) {
   Stage stage = Stage(tests::moving_scene()).policy(Policy::Budget);
-  stage.settings.regulator.cutoff_px = 0;
+  stage.settings.regulator.budget.cutoff_px = 0;
   for (const FrameReport& report : stage.run(kFrames, false))
     for (const regulator::LayerDecision& d : report.plan.decisions) EXPECT_LT(d.shown_geometric_px, 1e-9);
 }
@@ -247,7 +247,7 @@ TEST(StepBudget, MoreBudgetMeansLessError) {
   double before = HUGE_VAL;
   for (const std::int64_t pixels : {0, 3000, 60'000}) {
     Stage stage = Stage(tests::moving_scene()).policy(Policy::Budget);
-    stage.settings.regulator.budget_pixels = pixels;
+    stage.settings.regulator.budget.pixels = pixels;
     double sum = 0;
     for (const FrameReport& report : stage.run(40, false))
       for (const regulator::LayerDecision& d : report.plan.decisions) sum += d.shown_geometric_px;

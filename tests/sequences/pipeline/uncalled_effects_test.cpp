@@ -9,7 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/support/sequences.h"
 
 namespace talisman::sequences {
