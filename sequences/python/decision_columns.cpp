@@ -56,16 +56,31 @@ DecisionColumn column(const std::string& name, const Values& values) {
 
 struct DecisionColumns::Rows {
   std::vector<Values> by_column = std::vector<Values>(decision_table().columns.size());
+  std::vector<int> groups;  ///< by column; -1: always there
 };
 
-DecisionColumns::DecisionColumns() : rows_(std::make_unique<Rows>()) {}
+DecisionColumns::DecisionColumns() : rows_(std::make_unique<Rows>()) {
+  const auto& table = decision_table();
+  for (const auto& column : table.columns) {
+    int group = -1;
+    for (std::size_t g = 0; g < table.groups.size(); ++g)
+      if (column.path.rfind(table.groups[g].path + "/", 0) == 0) group = static_cast<int>(g);
+    rows_->groups.push_back(group);
+  }
+}
 DecisionColumns::~DecisionColumns() = default;
 
 void DecisionColumns::add(const Pipeline& pipeline, const PipelineState& state, const FrameReport& report) {
-  const auto& table = decision_table().columns;
+  const auto& table = decision_table();
   for (const int layer : layers_with_lines(state, report)) {
     const DecisionRow row{pipeline, report, report.plan.decisions[layer]};
-    for (std::size_t k = 0; k < table.size(); ++k) rows_->by_column[k].push_back(table[k].get(row));
+    std::vector<bool> has_group;
+    for (const auto& group : table.groups) has_group.push_back(group.has(row));
+    for (std::size_t k = 0; k < table.columns.size(); ++k) {
+      const int group = rows_->groups[k];
+      rows_->by_column[k].push_back(group < 0 || has_group[group] ? table.columns[k].get(row)
+                                                                  : Value(Null{}));
+    }
   }
 }
 

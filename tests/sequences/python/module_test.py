@@ -153,9 +153,11 @@ class Plan(unittest.TestCase):
                 lines = [json.loads(line) for line in file]
         plan = talisman.plan("carousel", geometric_px=2)
         self.assertEqual({len(column) for column in plan.values()}, {len(lines)})
-        for name in ("frame", "layer", "decision", "reason", "geometric_px", "depicts_frame"):
+        for name in ("frame", "layer", "decision", "reason", "geometric_px"):
             self.assertEqual(plan[name].tolist(), [line[name] for line in lines], name)
-        self.assertEqual(plan["polygons"].tolist(), [line["cost"]["polygons"] for line in lines])
+        for name, group in (("polygons", "cost"), ("held_geometric_px", "fiducials"), ("uncovered_px", "fiducials")):
+            values = [(line[group] or {}).get(name) for line in lines]
+            np.testing.assert_array_equal(plan[name], [np.nan if value is None else value for value in values], name)
         self.assertEqual(plan["frame"].dtype, np.int64)
         self.assertEqual(plan["geometric_px"].dtype, np.float64)
 
