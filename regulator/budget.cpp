@@ -48,8 +48,8 @@ std::array<Limited, 3> all_limited(const LayerCost& cost, const Budget& left,
                                    const RegulatorOptions& options) {
   const Budget whole = frame_budget(options);
   return {
-      {{"polygons", cost.polygons, left.polygons, whole.polygons, whole.polygons < options.budget_polygons},
-       {"pixels", cost.pixels, left.pixels, whole.pixels, whole.pixels < options.budget_pixels},
+      {{"polygons", cost.polygons, left.polygons, whole.polygons, whole.polygons < options.budget.polygons},
+       {"pixels", cost.pixels, left.pixels, whole.pixels, whole.pixels < options.budget.pixels},
        {"chunks", cost.chunks, left.chunks, whole.chunks, false}}};
 }
 
@@ -60,7 +60,7 @@ std::string excess(const LayerCost& cost, const Budget& left, const RegulatorOpt
   const auto all = all_limited(cost, left, options);
   const auto time = [&](const Limited& l) {
     char text[48] = "";
-    if (l.by_time) std::snprintf(text, sizeof text, " in %.4g ms", options.budget_ms);
+    if (l.by_time) std::snprintf(text, sizeof text, " in %.4g ms", options.budget.ms);
     return std::string(text);
   };
   for (const Limited& l : all)
@@ -94,8 +94,8 @@ LayerDecision decide_without_budget(const LayerAssessment& layer, const Regulato
   if (!layer.has_sprite) return rerender(layer, "first_appearance" + at_resolution(layer.resolution));
   if (nothing_to_gain(layer)) return reuse(layer, "unchanged" + at_resolution(layer.resolution_then));
   const double benefit = benefit_px(layer);
-  if (benefit > options.cutoff_px) return keep(layer, "deferred: max_update_rate");
-  return keep(layer, comparison("benefit", benefit, "<=", options.cutoff_px, "px"));
+  if (benefit > options.budget.cutoff_px) return keep(layer, "deferred: max_update_rate");
+  return keep(layer, comparison("benefit", benefit, "<=", options.budget.cutoff_px, "px"));
 }
 
 /// First appearances spend first, whatever is left.
@@ -130,10 +130,10 @@ double benefit_px(const LayerAssessment& layer) {
 }
 
 Budget frame_budget(const RegulatorOptions& options) {
-  Budget budget{options.budget_polygons, options.budget_pixels, options.budget_chunks};
+  Budget budget{options.budget.polygons, options.budget.pixels, options.budget.chunks};
   const HardwareProfile& profile = talisman_1996();
-  budget.polygons = std::min(budget.polygons, work_in(options.budget_ms, profile.polygons_per_s));
-  budget.pixels = std::min(budget.pixels, work_in(options.budget_ms, profile.renderer_pixels_per_s));
+  budget.polygons = std::min(budget.polygons, work_in(options.budget.ms, profile.polygons_per_s));
+  budget.pixels = std::min(budget.pixels, work_in(options.budget.ms, profile.renderer_pixels_per_s));
   return budget;
 }
 
@@ -165,7 +165,7 @@ void sort_by_benefit_per_cost(std::vector<Candidate>& candidates, const Budget& 
 }
 
 bool is_candidate(const LayerAssessment& layer, const RegulatorOptions& options) {
-  if (!layer.in_view || !layer.has_sprite || !(benefit_px(layer) > options.cutoff_px)) return false;
+  if (!layer.in_view || !layer.has_sprite || !(benefit_px(layer) > options.budget.cutoff_px)) return false;
   return !(has_sound_fit(layer) && barred_by_maximum_rate(layer));
 }
 
@@ -201,7 +201,7 @@ std::vector<LayerDecision> decide_budget(std::span<const LayerAssessment> assess
   sort_by_benefit_per_cost(order, left);
   for (const Candidate& candidate : order) {
     const LayerAssessment& layer = assessments[index_of(candidate.layer)];
-    const std::string gain = comparison("benefit", candidate.benefit_px, ">", options.cutoff_px, "px");
+    const std::string gain = comparison("benefit", candidate.benefit_px, ">", options.budget.cutoff_px, "px");
     const std::string lack = excess(candidate.cost, left, options);
     LayerDecision& decision = decisions[index_of(candidate.layer)];
     const std::string detail = gain + at_resolution(layer.resolution);

@@ -106,40 +106,54 @@ FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, cons
   return plan;
 }
 
-std::string first_defect(const RegulatorOptions& o) {
-  const auto broken = [](const char* option, double value, const char* rule) {
-    char text[160];
-    std::snprintf(text, sizeof text, "%s is %g, must be %s", option, value, rule);
-    return std::string(text);
-  };
-  // The comparisons are written so that NaN breaks each rule.
-  if (o.hold_frames < 1) return broken("hold_frames", o.hold_frames, "at least 1");
-  if (!(o.geometric_px >= 0)) return broken("geometric_px", o.geometric_px, "at least 0");
-  if (!(o.magnification == 0 || o.magnification >= 1))
-    return broken("magnification", o.magnification, "0 (off) or at least 1");
-  if (!(o.minification >= 0 && o.minification <= 1))
-    return broken("minification", o.minification, "0 (off) to 1");
-  if (!(o.anisotropy == 0 || o.anisotropy >= 1))
-    return broken("anisotropy", o.anisotropy, "0 (off) or at least 1");
-  if (std::isnan(o.uncovered_px)) return broken("uncovered_px", o.uncovered_px, "a number (negative: off)");
-  if (!(o.turned_px >= 0)) return broken("turned_px", o.turned_px, "at least 0 (0: off)");
-  if (!(o.photometric >= 0)) return broken("photometric", o.photometric, "at least 0 (0: off)");
-  if (!(o.light_angle_rad >= 0 && o.light_angle_rad <= std::numbers::pi))
-    return broken("light_angle_rad", o.light_angle_rad, "0 (off) to pi, which is 180 degrees");
-  if (o.lookahead_frames < 0) return broken("lookahead_frames", o.lookahead_frames, "at least 0");
-  if (o.budget_polygons < 0)
-    return broken("budget_polygons", static_cast<double>(o.budget_polygons), "at least 0");
-  if (o.budget_pixels < 0) return broken("budget_pixels", static_cast<double>(o.budget_pixels), "at least 0");
-  if (o.budget_chunks < 0) return broken("budget_chunks", static_cast<double>(o.budget_chunks), "at least 0");
-  if (!(o.budget_ms >= 0)) return broken("budget_ms", o.budget_ms, "at least 0");
-  if (!(o.min_resolution > 0 && o.min_resolution <= 1))
-    return broken("min_resolution", o.min_resolution, "above 0 and at most 1");
-  if (!(o.cutoff_px >= 0)) return broken("cutoff_px", o.cutoff_px, "at least 0");
+namespace {
+
+std::string broken(const char* option, double value, const char* rule) {
+  char text[160];
+  std::snprintf(text, sizeof text, "%s is %g, must be %s", option, value, rule);
+  return text;
+}
+
+// The comparisons are written so that NaN breaks each rule.
+
+std::string first_defect(const Thresholds& t) {
+  if (!(t.geometric_px >= 0)) return broken("geometric_px", t.geometric_px, "at least 0");
+  if (!(t.magnification == 0 || t.magnification >= 1))
+    return broken("magnification", t.magnification, "0 (off) or at least 1");
+  if (!(t.minification >= 0 && t.minification <= 1))
+    return broken("minification", t.minification, "0 (off) to 1");
+  if (!(t.anisotropy == 0 || t.anisotropy >= 1))
+    return broken("anisotropy", t.anisotropy, "0 (off) or at least 1");
+  if (std::isnan(t.uncovered_px)) return broken("uncovered_px", t.uncovered_px, "a number (negative: off)");
+  if (!(t.turned_px >= 0)) return broken("turned_px", t.turned_px, "at least 0 (0: off)");
+  if (!(t.photometric >= 0)) return broken("photometric", t.photometric, "at least 0 (0: off)");
+  if (!(t.light_angle_rad >= 0 && t.light_angle_rad <= std::numbers::pi))
+    return broken("light_angle_rad", t.light_angle_rad, "0 (off) to pi, which is 180 degrees");
   return {};
 }
 
+std::string first_defect(const BudgetOptions& b) {
+  if (b.polygons < 0) return broken("budget_polygons", static_cast<double>(b.polygons), "at least 0");
+  if (b.pixels < 0) return broken("budget_pixels", static_cast<double>(b.pixels), "at least 0");
+  if (b.chunks < 0) return broken("budget_chunks", static_cast<double>(b.chunks), "at least 0");
+  if (!(b.ms >= 0)) return broken("budget_ms", b.ms, "at least 0");
+  if (!(b.min_resolution > 0 && b.min_resolution <= 1))
+    return broken("min_resolution", b.min_resolution, "above 0 and at most 1");
+  if (!(b.cutoff_px >= 0)) return broken("cutoff_px", b.cutoff_px, "at least 0");
+  return {};
+}
+
+}  // namespace
+
+std::string first_defect(const RegulatorOptions& options) {
+  if (options.hold_frames < 1) return broken("hold_frames", options.hold_frames, "at least 1");
+  if (std::string defect = first_defect(options.thresholds); !defect.empty()) return defect;
+  if (options.lookahead.frames < 0) return broken("lookahead_frames", options.lookahead.frames, "at least 0");
+  return first_defect(options.budget);
+}
+
 bool asks_for_light(const RegulatorOptions& options) {
-  return options.color_warp || options.photometric != 0 || options.light_angle_rad != 0;
+  return options.color_warp || options.thresholds.photometric != 0 || options.thresholds.light_angle_rad != 0;
 }
 
 bool follows_light(const RegulatorOptions& options) {
@@ -171,7 +185,7 @@ double expected_reuse_frames(const RegulatorOptions& options, double threshold_d
     case Policy::Threshold:
     case Policy::Lookahead:
     case Policy::Oracle:
-      return options.geometric_px > 0 ? threshold_default : 0;
+      return options.thresholds.geometric_px > 0 ? threshold_default : 0;
     case Policy::Budget:
       return threshold_default;
   }

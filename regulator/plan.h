@@ -79,11 +79,9 @@ inline constexpr std::array kAllPredictions = {Prediction::Known, Prediction::Li
 std::string_view name(Prediction prediction);  ///< "known", "linear"
 std::optional<Prediction> prediction_from_name(std::string_view text);
 
-/// Options of all policies. Thresholds: a layer is rendered again when a fiducial exceeds its threshold.
-struct RegulatorOptions {
-  Policy policy = Policy::Threshold;
-  int hold_frames = 3;         ///< Hold, Interpolate: N ≥ 1; 1 is every frame
-  double geometric_px = 4;     ///< ≥ 0; 0: reuse only what is identical; fewer renders as it grows
+/// A layer is rendered again when a fiducial exceeds its threshold; fewer renders as they grow.
+struct Thresholds {
+  double geometric_px = 4;     ///< ≥ 0; 0: reuse only what is identical
   double magnification = 1.5;  ///< ≥ 1: texels stretched by more than this are drawn again; 0: not regulated
   double minification = 0.5;   ///< 0 … 1: texels squeezed by more; 0: not regulated
   double anisotropy = 2;       ///< ≥ 1; 0: not regulated
@@ -91,26 +89,46 @@ struct RegulatorOptions {
   double turned_px = 0;        ///< > 0: a side of the layer that has turned to the eye may be this large
                                ///< (square root of its area); 0: not regulated, and not computed
   double photometric = 0.05;   ///< > 0: shading may be this far off, linear light (1 is white), after the
-                               ///< colour warp; fewer renders as it grows; 0: not regulated
+                               ///< colour warp; 0: not regulated
   double light_angle_rad = 0;  ///< 0 … π: a light (or, for highlights, the eye) may have moved by this angle
                                ///< about the layer: the alternative for hardware without colour warp; 0:
                                ///< not regulated
-  bool color_warp = true;      ///< reused sprites are multiplied with the colour that fits their shading
-                               ///< best; false: hardware without it, the photometric error is that of 1
-  int lookahead_frames = 16;  ///< Lookahead: N ≥ 0; a sprite may be drawn as of an instant up to N frames
-                              ///< ahead; 0 draws as of now; planning time grows with N, renders fall
-  std::int64_t budget_polygons = kNoLimit;  ///< Budget: triangles per frame, ≥ 0; more is drawn as it grows
-  std::int64_t budget_pixels = kNoLimit;    ///< Budget: sprite texels per frame, ≥ 0; likewise
-  std::int64_t budget_chunks = kNoLimit;    ///< Budget: 32×32 chunks of sprites per frame, ≥ 0; likewise
-  double budget_ms = kNoLimitMs;  ///< Budget: modelled render time per frame on talisman-1996, ≥ 0; likewise
-  double min_resolution = 0.125;  ///< Budget: (0, 1]; how far the resolution of sprites may be lowered to fit
-                                  ///< a budget of pixels, chunks or time (regulator/resolution.h); 1: never;
-                                  ///< raising it keeps sprites sharp and draws them less often
-  Prediction predict = Prediction::Known;  ///< Lookahead: what is known ahead; Linear draws more often, since
-                                           ///< it errs where the motion bends
-  double cutoff_px = 0.004;  ///< Budget: ≥ 0; a layer whose benefit (regulator/budget.h) is not above it is
-                             ///< never drawn again; the default is 1/1000 of a typical error of 4 px [LS97
-                             ///< 6]; more leaves resources unspent
+  bool operator==(const Thresholds&) const = default;
+};
+
+/// Policy Lookahead.
+struct LookaheadOptions {
+  int frames = 16;  ///< N ≥ 0; a sprite may be drawn as of an instant up to N frames ahead; 0 draws as of
+                    ///< now; planning time grows with N, renders fall
+  Prediction predict = Prediction::Known;  ///< what is known ahead; Linear draws more often, since it errs
+                                           ///< where the motion bends
+  bool operator==(const LookaheadOptions&) const = default;
+};
+
+/// Policy Budget: what a frame may spend. More is drawn as a limit grows.
+struct BudgetOptions {
+  std::int64_t polygons = kNoLimit;  ///< triangles per frame, ≥ 0
+  std::int64_t pixels = kNoLimit;    ///< sprite texels per frame, ≥ 0
+  std::int64_t chunks = kNoLimit;    ///< 32×32 chunks of sprites per frame, ≥ 0
+  double ms = kNoLimitMs;            ///< modelled render time per frame on talisman-1996, ≥ 0
+  double min_resolution = 0.125;     ///< (0, 1]; how far the resolution of sprites may be lowered to fit a
+                                     ///< budget of pixels, chunks or time (regulator/resolution.h); 1: never;
+                                     ///< raising it keeps sprites sharp and draws them less often
+  double cutoff_px = 0.004;  ///< ≥ 0; a layer whose benefit (regulator/budget.h) is not above it is never
+                             ///< drawn again; the default is 1/1000 of a typical error of 4 px [LS97 6]; more
+                             ///< leaves resources unspent
+  bool operator==(const BudgetOptions&) const = default;
+};
+
+/// Options of all policies.
+struct RegulatorOptions {
+  Policy policy = Policy::Threshold;
+  int hold_frames = 3;     ///< Hold, Interpolate: N ≥ 1; 1 is every frame
+  bool color_warp = true;  ///< reused sprites are multiplied with the colour that fits their shading best;
+                           ///< false: hardware without it, the photometric error is that of 1
+  Thresholds thresholds;
+  LookaheadOptions lookahead;
+  BudgetOptions budget;
   bool operator==(const RegulatorOptions&) const = default;
 };
 
@@ -144,7 +162,8 @@ bool asks_for_light(const RegulatorOptions& options);
 /// … and does the policy carry old sprites by warps at all, so that the light on them has to be followed?
 bool follows_light(const RegulatorOptions& options);
 
-/// First broken rule ("hold_frames is 0, must be at least 1"), or empty.
+/// First broken rule ("hold_frames is 0, must be at least 1"), or empty. It names the options as users write
+/// them: budget.ms is budget_ms.
 std::string first_defect(const RegulatorOptions& options);
 
 /// For how many later frames a sprite is expected to be moved by a warp: 0 where none is (Direct, Reference,

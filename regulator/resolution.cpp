@@ -55,9 +55,9 @@ double regulated_resolution(const LayerAssessment& layer, double share, const Re
     const double most = (1 + kMostChange) * layer.resolution_then;
     resolution = layer.identical ? most
                                  : after_waiting(std::clamp(share, least, most), layer.frames_short_of_area,
-                                                 options.min_resolution);
+                                                 options.budget.min_resolution);
   }
-  return std::clamp(resolution, options.min_resolution, 1.0);
+  return std::clamp(resolution, options.budget.min_resolution, 1.0);
 }
 
 void regulate_resolutions(std::span<LayerAssessment> assessments, const RegulatorOptions& options) {

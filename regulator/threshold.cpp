@@ -14,36 +14,38 @@ std::string name_of(const fiducials::LightRef& light) {
                             : " (light '" + std::string(light.name) + "')";
 }
 
-std::string photometric_violation(const fiducials::Photometric& p, const RegulatorOptions& o) {
+std::string photometric_violation(const fiducials::Photometric& p, const Thresholds& limits) {
   if (!p.computed) return {};
-  if (o.photometric > 0 && !(p.color <= o.photometric))
-    return comparison("photometric", p.color, ">", o.photometric) + name_of(p.color_light);
-  if (o.light_angle_rad > 0 && !(p.light_angle_rad <= o.light_angle_rad))
-    return comparison("photometric: light angle", p.light_angle_rad, ">", o.light_angle_rad, "rad") +
+  if (limits.photometric > 0 && !(p.color <= limits.photometric))
+    return comparison("photometric", p.color, ">", limits.photometric) + name_of(p.color_light);
+  if (limits.light_angle_rad > 0 && !(p.light_angle_rad <= limits.light_angle_rad))
+    return comparison("photometric: light angle", p.light_angle_rad, ">", limits.light_angle_rad, "rad") +
            name_of(p.angle_light);
   return {};
 }
 
 /// The first fiducial beyond its threshold, in words and numbers, or an empty string.
 /// The order is that of [LS97 5]: geometry first, because it is the one that users set.
-std::string first_violation(const LayerAssessment& layer, const RegulatorOptions& o) {
+std::string first_violation(const LayerAssessment& layer, const Thresholds& limits) {
   const fiducials::Report& f = layer.fiducials;
   if (!layer.fitted.usable()) return "fit: " + std::string(warp::name(layer.fitted.status));
   if (layer.matched_points < kFewestMatchedPoints)
     return comparison("matched points", layer.matched_points, "<", kFewestMatchedPoints);
-  if (!(f.geometric.px <= o.geometric_px))
-    return comparison("geometric", f.geometric.px, ">", o.geometric_px, "px");
-  if (std::string light = photometric_violation(f.photometric, o); !light.empty()) return light;
-  if (o.magnification > 0 && !(f.sampling.magnification <= o.magnification))
-    return comparison("sampling: magnification", f.sampling.magnification, ">", o.magnification);
-  if (o.minification > 0 && !(f.sampling.minification >= o.minification))
-    return comparison("sampling: minification", f.sampling.minification, "<", o.minification);
-  if (o.anisotropy > 0 && !(f.sampling.anisotropy <= o.anisotropy))
-    return comparison("sampling: anisotropy", f.sampling.anisotropy, ">", o.anisotropy);
-  if (o.uncovered_px >= 0 && f.visibility.computed && !(f.visibility.uncovered_px <= o.uncovered_px))
-    return comparison("visibility: uncovered edge", f.visibility.uncovered_px, ">", o.uncovered_px, "px");
-  if (o.turned_px > 0 && f.turned.computed && !(f.turned.px <= o.turned_px))
-    return comparison("visibility: side turned to the eye", f.turned.px, ">", o.turned_px, "px");
+  if (!(f.geometric.px <= limits.geometric_px))
+    return comparison("geometric", f.geometric.px, ">", limits.geometric_px, "px");
+  if (std::string light = photometric_violation(f.photometric, limits); !light.empty()) return light;
+  if (limits.magnification > 0 && !(f.sampling.magnification <= limits.magnification))
+    return comparison("sampling: magnification", f.sampling.magnification, ">", limits.magnification);
+  if (limits.minification > 0 && !(f.sampling.minification >= limits.minification))
+    return comparison("sampling: minification", f.sampling.minification, "<", limits.minification);
+  if (limits.anisotropy > 0 && !(f.sampling.anisotropy <= limits.anisotropy))
+    return comparison("sampling: anisotropy", f.sampling.anisotropy, ">", limits.anisotropy);
+  if (limits.uncovered_px >= 0 && f.visibility.computed &&
+      !(f.visibility.uncovered_px <= limits.uncovered_px))
+    return comparison("visibility: uncovered edge", f.visibility.uncovered_px, ">", limits.uncovered_px,
+                      "px");
+  if (limits.turned_px > 0 && f.turned.computed && !(f.turned.px <= limits.turned_px))
+    return comparison("visibility: side turned to the eye", f.turned.px, ">", limits.turned_px, "px");
   return {};
 }
 
@@ -64,8 +66,8 @@ bool has_sound_fit(const LayerAssessment& layer) {
 
 std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& options) {
   if (nothing_to_gain(layer)) return {};
-  if (!(options.geometric_px > 0)) return "changed, geometric threshold 0 px";
-  std::string violation = first_violation(layer, options);
+  if (!(options.thresholds.geometric_px > 0)) return "changed, geometric threshold 0 px";
+  std::string violation = first_violation(layer, options.thresholds);
   if (violation.empty() && due_by_minimum_rate(layer))
     violation = comparison("min_update_rate: frames since render", layer.frames_since_render,
                            ">=", 1 / layer.preferences.min_update_rate);
@@ -79,8 +81,8 @@ LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOpti
   if (nothing_to_gain(layer)) return reuse(layer, "unchanged");
   std::string violation = violation_of(layer, options);
   if (violation.empty())
-    return reuse(layer,
-                 comparison("geometric", layer.fiducials.geometric.px, "<=", options.geometric_px, "px"));
+    return reuse(layer, comparison("geometric", layer.fiducials.geometric.px,
+                                   "<=", options.thresholds.geometric_px, "px"));
   if (has_sound_fit(layer) && barred_by_maximum_rate(layer))
     return reuse(layer, "deferred: max_update_rate; " + violation);
   return rerender(layer, std::move(violation));

@@ -14,7 +14,7 @@ int main() {
   sequences::Settings settings;
   settings.view.display_px = {640, 360};
   settings.regulator.policy = regulator::Policy::Threshold;
-  settings.regulator.geometric_px = 2;
+  settings.regulator.thresholds.geometric_px = 6;
   settings.frames = 24;
 
   const sequences::Pipeline pipeline = sequences::make_pipeline(scene, boxes, settings);

@@ -26,7 +26,7 @@ int main() {
   std::ofstream file("boxes.ppm", std::ios::binary);
   file << "P6\n" << report.picture.width << " " << report.picture.height << "\n255\n";
   file.write(reinterpret_cast<const char*>(rgb.data()), static_cast<std::streamsize>(rgb.size()));
-  std::printf("boxes.ppm: %dx%d pixels, %zu sprites, %d of them drawn before frame 12\n", report.picture.width,
-              report.picture.height, report.shown.size(), report.late_renders);
+  std::printf("boxes.ppm: %dx%d pixels, %zu sprites, %d of them planned in earlier frames\n",
+              report.picture.width, report.picture.height, report.shown.size(), report.late_renders);
   return file ? 0 : 1;
 }

@@ -10,6 +10,7 @@
 #include "sequences/commands/accuracy.h"
 #include "sequences/commands/cache_options.h"
 #include "sequences/commands/diff_command.h"
+#include "sequences/commands/export_command.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/warps.h"
@@ -33,6 +34,7 @@ class CommandTree {
   void add_runs(const std::atomic<bool>& stop);
   void add_inspect();
   void add_diff();
+  void add_exports();
   void add_warps();
   void add_accuracy();
 
@@ -40,6 +42,8 @@ class CommandTree {
   CommandLine line_;
   InspectOptions inspect_;
   DiffOptions diff_;
+  ExportOptions export_;
+  std::string documented_;
   WarpsOptions warps_;
   AccuracyOptions accuracy_;
   CacheWords cache_;

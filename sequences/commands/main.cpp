@@ -9,9 +9,19 @@
 #include <iostream>
 #include <string>
 
+#include "sequences/commands/accuracy.h"
 #include "sequences/commands/cache_options.h"
 #include "sequences/commands/command_tree.h"
+#include "sequences/commands/export_command.h"
+#include "sequences/commands/inspect.h"
+#include "sequences/commands/inspect_order.h"
+#include "sequences/commands/options.h"
 #include "sequences/commands/parse_error.h"
+#include "sequences/commands/run_words.h"
+#include "sequences/commands/warps.h"
+#include "sequences/pictures/diff.h"
+#include <CLI/CLI.hpp>
+#include <oneapi/tbb/global_control.h>
 
 namespace {
 

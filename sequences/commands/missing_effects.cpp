@@ -6,6 +6,7 @@
 #include "layers/built_effects.h"
 #include "sequences/experiments/variant.h"
 #include "sequences/files/errors.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 

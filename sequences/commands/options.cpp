@@ -60,23 +60,23 @@ void apply_prediction(const CommandLine& line, regulator::RegulatorOptions& opti
   if (prediction != regulator::Prediction::Known && options.policy != regulator::Policy::Lookahead)
     throw InputError("--predict is '" + line.predict + "', but --policy is '" +
                      std::string(regulator::name(options.policy)) + "', must be lookahead");
-  options.predict = prediction;
+  options.lookahead.predict = prediction;
 }
 
 void apply_limits(const CommandLine& line, regulator::RegulatorOptions& options) {
-  if (line.budget_polygons) options.budget_polygons = *line.budget_polygons;
-  if (line.budget_pixels) options.budget_pixels = *line.budget_pixels;
-  if (line.budget_chunks) options.budget_chunks = *line.budget_chunks;
-  if (line.budget_ms) options.budget_ms = *line.budget_ms;
-  if (line.min_resolution) options.min_resolution = *line.min_resolution;
-  if (line.cutoff_px) options.cutoff_px = *line.cutoff_px;
+  if (line.budget_polygons) options.budget.polygons = *line.budget_polygons;
+  if (line.budget_pixels) options.budget.pixels = *line.budget_pixels;
+  if (line.budget_chunks) options.budget.chunks = *line.budget_chunks;
+  if (line.budget_ms) options.budget.ms = *line.budget_ms;
+  if (line.min_resolution) options.budget.min_resolution = *line.min_resolution;
+  if (line.cutoff_px) options.budget.cutoff_px = *line.cutoff_px;
 }
 
 void apply_thresholds(const CommandLine& line, regulator::RegulatorOptions& options) {
-  if (line.geometric_px) options.geometric_px = *line.geometric_px;
-  if (line.photometric) options.photometric = *line.photometric;
-  if (line.light_angle_deg) options.light_angle_rad = glm::radians(*line.light_angle_deg);
-  if (line.turned_px) options.turned_px = *line.turned_px;
+  if (line.geometric_px) options.thresholds.geometric_px = *line.geometric_px;
+  if (line.photometric) options.thresholds.photometric = *line.photometric;
+  if (line.light_angle_deg) options.thresholds.light_angle_rad = glm::radians(*line.light_angle_deg);
+  if (line.turned_px) options.thresholds.turned_px = *line.turned_px;
   if (!line.color_warp.empty()) options.color_warp = choice("--color-warp", line.color_warp, kSwitchWords);
 }
 
@@ -96,7 +96,7 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (!line.policy.empty()) options.policy = choice("--policy", line.policy, kPolicyWords);
   apply_thresholds(line, options);
   if (line.hold) options.hold_frames = *line.hold;
-  if (line.lookahead) options.lookahead_frames = *line.lookahead;
+  if (line.lookahead) options.lookahead.frames = *line.lookahead;
   apply_limits(line, options);
   apply_prediction(line, options);
   require_consistent(line, options);

@@ -81,6 +81,18 @@ std::string resolve_asset(const std::string& path, const std::string& sequence_f
   return found.string();
 }
 
+std::string content_name(const std::string& path, const std::string& sequence_file) {
+  std::error_code error;
+  const fs::path file = fs::weakly_canonical(path, error);
+  const fs::path in_assets = file.lexically_relative(fs::weakly_canonical(assets_folder(), error));
+  if (!in_assets.empty() && *in_assets.begin() != "..") {
+    const std::string package = in_assets.begin()->string();
+    return package + ":" + in_assets.generic_string().substr(package.size());
+  }
+  const fs::path folder = fs::weakly_canonical(sequence_file, error).parent_path();
+  return file.lexically_relative(folder).generic_string();
+}
+
 std::string sequence_file_of(const std::string& name) {
   const std::string root = data_folder();
   if (root.empty() || name.empty() || name.find("..") != std::string::npos) return {};

@@ -24,6 +24,10 @@ std::string fetch_command(const std::string& name);
 /// of a package the error names the command that fetches it.
 std::string resolve_asset(const std::string& path, const std::string& sequence_file, int line = 0);
 
+/// What results call the file `path` that belongs to `sequence_file`: "package:/path" in the folder of assets, else
+/// the path from the sequence file's folder. The same on every machine.
+std::string content_name(const std::string& path, const std::string& sequence_file);
+
 /// sequences/<name>/<name>.yaml, or sequences/<name>/<variant>.yaml for "<name>/<variant>"; empty when there
 /// is none.
 std::string sequence_file_of(const std::string& name);

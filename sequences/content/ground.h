@@ -40,6 +40,7 @@ struct TerrainContent {
   int segments = 6;    ///< 1 … rows / 2; more of them follow parallax more closely, and are more sprites
   int seam_cells = 1;  ///< 0 … 64; rows by which a segment reaches over each inner border
   std::string classes_file;  ///< as many pixels as heights; empty: one colour
+  std::string list_file;     ///< that the classes were read from; empty: none
   std::vector<GroundClass> classes;
   int texels_per_cell = 6;  ///< 1 … 32; memory and baking time grow with the square
   double tile_m = 40;       ///< > 0; side of one repetition of a class texture

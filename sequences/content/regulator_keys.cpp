@@ -7,7 +7,10 @@ namespace talisman::sequences {
 
 namespace {
 
+using regulator::BudgetOptions;
+using regulator::LookaheadOptions;
 using regulator::RegulatorOptions;
+using regulator::Thresholds;
 using Keys = Table<RegulatorOptions>;
 
 constexpr int kLongestRun_frames = 1'000'000;
@@ -27,60 +30,56 @@ Format<regulator::Prediction> prediction() {
 
 Format<int> amount() { return whole(0, std::numeric_limits<int>::max()); }
 
-Keys lookahead_keys() {
-  using R = RegulatorOptions;
-  return Keys()
-      .key("lookahead_frames", &R::lookahead_frames, whole(0, kLongestRun_frames), "frames",
+Table<LookaheadOptions> lookahead_keys() {
+  using L = LookaheadOptions;
+  return Table<L>()
+      .key("lookahead_frames", &L::frames, whole(0, kLongestRun_frames), "frames",
            "policy lookahead: how far ahead the instant of a sprite may lie")
-      .key("predict", &R::predict, prediction(), "",
+      .key("predict", &L::predict, prediction(), "",
            "policy lookahead: motion ahead is known, or goes on as it is");
 }
 
-Keys budget_keys() {
-  using R = RegulatorOptions;
-  return Keys()
-      .key("budget_polygons", &R::budget_polygons, amount(), "triangles", "policy budget: of each frame")
+Table<BudgetOptions> budget_keys() {
+  using B = BudgetOptions;
+  return Table<B>()
+      .key("budget_polygons", &B::polygons, amount(), "triangles", "policy budget: of each frame")
       .otherwise("no limit")
-      .key("budget_pixels", &R::budget_pixels, amount(), "texels", "policy budget: of each frame")
+      .key("budget_pixels", &B::pixels, amount(), "texels", "policy budget: of each frame")
       .otherwise("no limit")
-      .key("budget_chunks", &R::budget_chunks, amount(), "chunks",
-           "policy budget: of each frame, 32 × 32 texels")
+      .key("budget_chunks", &B::chunks, amount(), "chunks", "policy budget: of each frame, 32 × 32 texels")
       .otherwise("no limit")
-      .key("budget_ms", &R::budget_ms, number(kNotNegative), "ms",
+      .key("budget_ms", &B::ms, number(kNotNegative), "ms",
            "policy budget: modelled render time of each frame")
       .otherwise("no limit")
-      .key("min_resolution", &R::min_resolution, number({0, 1, true}), "",
+      .key("min_resolution", &B::min_resolution, number({0, 1, true}), "",
            "policy budget: how far sprites may be drawn coarser to fit; 1: never")
-      .key("cutoff_px", &R::cutoff_px, number(kNotNegative), "px",
+      .key("cutoff_px", &B::cutoff_px, number(kNotNegative), "px",
            "policy budget: a layer whose benefit is not above it is not drawn again");
 }
 
-Keys threshold_keys() {
-  using R = RegulatorOptions;
-  return Keys()
-      .key("geometric_px", &R::geometric_px, number(kNotNegative), "px",
+Table<Thresholds> threshold_keys() {
+  using T = Thresholds;
+  return Table<T>()
+      .key("geometric_px", &T::geometric_px, number(kNotNegative), "px",
            "a reused sprite may be this far off at any characteristic point; 0: only what is identical is "
            "reused")
-      .key("magnification", &R::magnification, zero_or(kStretch), "",
+      .key("magnification", &T::magnification, zero_or(kStretch), "",
            "texels may be stretched by this; 0: not regulated")
-      .key("minification", &R::minification, number({0, 1}), "",
+      .key("minification", &T::minification, number({0, 1}), "",
            "texels may be squeezed to this; 0: not regulated")
-      .key("anisotropy", &R::anisotropy, zero_or(kStretch), "",
+      .key("anisotropy", &T::anisotropy, zero_or(kStretch), "",
            "texels may be longer than wide by this; 0: not regulated")
-      .key("uncovered_px", &R::uncovered_px, number(), "px",
+      .key("uncovered_px", &T::uncovered_px, number(), "px",
            "a cut side may be this far in view; negative: not regulated")
-      .key("turned_px", &R::turned_px, number(kNotNegative), "px",
+      .key("turned_px", &T::turned_px, number(kNotNegative), "px",
            "a side of the characteristic polyhedron that has turned to the eye may be this large (square "
            "root of its area on the display); 0: not regulated")
-      .key("photometric", &R::photometric, number(kNotNegative), "1",
+      .key("photometric", &T::photometric, number(kNotNegative), "1",
            "shading may be this far off at any characteristic point, after the colour warp; linear light, 1 "
            "is white; 0: not regulated")
-      .key("light_angle_deg", &R::light_angle_rad, degrees({0, 180}), "°",
+      .key("light_angle_deg", &T::light_angle_rad, degrees({0, 180}), "°",
            "a light (or, for highlights, the eye) may have moved by this about the layer: the alternative "
-           "for hardware without colour warp; 0: not regulated")
-      .key("color_warp", &R::color_warp, truth(), "",
-           "reused sprites are multiplied with the colour (0 … 1 per channel) that fits the light now best. "
-           "Multipliers only darken; light that grows is drawn again");
+           "for hardware without colour warp; 0: not regulated");
 }
 
 }  // namespace
@@ -91,9 +90,13 @@ const Table<RegulatorOptions>& regulator_keys() {
                                 .key("policy", &R::policy, policy(), "", "what decides")
                                 .key("hold_frames", &R::hold_frames, whole(1, kLongestRun_frames), "frames",
                                      "policies hold and interpolate: drawn every so many")
-                                .include(threshold_keys())
-                                .include(lookahead_keys())
-                                .include(budget_keys());
+                                .include(&R::thresholds, threshold_keys())
+                                .key("color_warp", &R::color_warp, truth(), "",
+                                     "reused sprites are multiplied with the colour (0 … 1 per channel) that "
+                                     "fits the light now best. "
+                                     "Multipliers only darken; light that grows is drawn again")
+                                .include(&R::lookahead, lookahead_keys())
+                                .include(&R::budget, budget_keys());
   return table;
 }
 

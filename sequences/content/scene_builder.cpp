@@ -121,6 +121,7 @@ layers::Transform fitting(const ModelRecipe& recipe, const layers::Scene& model)
 void add_model(BuiltScene& built, const ModelRecipe& recipe) {
   const ImportedModel model = import_model(recipe.file);
   for (const std::string& warning : model.warnings) built.warnings.push_back(recipe.file + ": " + warning);
+  append(built.files, files_read(model));
   const SharedContent content = add_content(built.scene, model.scene, recipe.two_sided);
   const layers::Transform fit = fitting(recipe, model.scene);
   for (const ModelInstance& instance : recipe.instances) {
@@ -131,19 +132,21 @@ void add_model(BuiltScene& built, const ModelRecipe& recipe) {
 
 /// Named as textures of models are: where the content lies differs from machine to machine, and results name
 /// it.
-int add_texture(layers::Scene& scene, const std::string& file) {
-  scene.textures.push_back(read_texture(file));
-  scene.textures.back().name = std::filesystem::path(file).filename().string();
-  return static_cast<int>(scene.textures.size()) - 1;
+int add_texture(BuiltScene& built, const std::string& file) {
+  std::vector<layers::Texture>& textures = built.scene.textures;
+  textures.push_back(read_texture(file));
+  textures.back().name = std::filesystem::path(file).filename().string();
+  built.files.push_back(file);
+  return static_cast<int>(textures.size()) - 1;
 }
 
 void add_shape(BuiltScene& built, const ShapeRecipe& recipe) {
   layers::Scene& scene = built.scene;
   layers::Material material = recipe.content.material;
   const ShapeContent& content = recipe.content;
-  if (!content.texture_file.empty()) material.texture = add_texture(scene, content.texture_file);
+  if (!content.texture_file.empty()) material.texture = add_texture(built, content.texture_file);
   if (!content.second_texture_file.empty())
-    material.texture2 = add_texture(scene, content.second_texture_file);
+    material.texture2 = add_texture(built, content.second_texture_file);
   const int mesh = static_cast<int>(scene.meshes.size());
   scene.meshes.push_back(shape_mesh(recipe.content));
   scene.meshes.back().name = material.name;
@@ -235,9 +238,27 @@ void add_default_view(layers::Scene& scene) {
   if (scene.lights.empty()) add_daylight(scene);
 }
 
+namespace {
+
+/// Those of terrain and sky; a class of ground that no pixel has may name a texture that is not there.
+std::vector<std::string> files_of(const SceneRecipe& recipe) {
+  std::vector<std::string> files;
+  if (recipe.sky) files.push_back(recipe.sky->clouds_file);
+  if (recipe.terrain) {
+    files.insert(files.end(),
+                 {recipe.terrain->heights_file, recipe.terrain->classes_file, recipe.terrain->list_file});
+    for (const GroundClass& ground : recipe.terrain->classes) files.push_back(ground.texture_file);
+  }
+  std::erase_if(files, [](const std::string& file) { return !std::filesystem::is_regular_file(file); });
+  return files;
+}
+
+}  // namespace
+
 BuiltScene build_scene(const SceneRecipe& recipe) {
   BuiltScene built;
   built.scene.background = recipe.background;
+  built.files = files_of(recipe);
   if (recipe.sky) add_sky(built.scene, *recipe.sky);
   if (recipe.terrain) add_terrain(built.scene, *recipe.terrain);
   for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);

@@ -18,6 +18,7 @@ struct BuiltScene {
   layers::Scene scene;
   std::vector<LayerTag> layer_tags;
   std::vector<std::string> warnings;
+  std::vector<std::string> files = {};       ///< that were opened for it: Sequence::content_files
   std::map<std::string, int> carriers = {};  ///< the node of each shape that can carry others, by its name
 };
 

@@ -61,6 +61,7 @@ void finish(Sequence& sequence, BuiltScene built, std::vector<layers::LayerSpec>
   sequence.layers = layers::factor(built.scene, specs);
   sequence.layer_specs = std::move(specs);
   sequence.warnings.insert(sequence.warnings.end(), built.warnings.begin(), built.warnings.end());
+  sequence.content_files.insert(sequence.content_files.end(), built.files.begin(), built.files.end());
   if (const int parts = sequence.layers.unassigned_parts; parts > 0)
     sequence.warnings.push_back(parts == 1 ? "1 part is taken by no layer and is not drawn"
                                            : std::to_string(parts) +
@@ -106,7 +107,11 @@ Sequence load_model(const std::string& path) {
       duration > 0 ? std::max(1, static_cast<int>(std::lround(duration * sequence.fps))) : kOrbitFrames;
   add_default_view(model.scene);
   std::vector<layers::LayerSpec> specs = specs_of_model(model.scene, model.layer_tags);
-  finish(sequence, {std::move(model.scene), {}, std::move(model.warnings)}, std::move(specs));
+  BuiltScene built;
+  built.scene = std::move(model.scene);
+  built.warnings = std::move(model.warnings);
+  built.files = files_read(model);
+  finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) throw InputError(sequence.layers.defect, path);
   return sequence;
 }

@@ -23,8 +23,12 @@ namespace talisman::sequences {
 struct Sequence {
   std::string name;  ///< "canyon", or the model's file name without extension
   std::string file;  ///< what was read
-  int frames = 0;    ///< ≥ 1
-  double fps = 24;   ///< > 0; frame f is at f / fps seconds
+  /// Every file whose content the sequence depends on, in the order in which it was opened: `file`, those that
+  /// it extends, models and what they refer to, textures, terrain and lists. One that is used twice may be
+  /// listed twice.
+  std::vector<std::string> content_files;
+  int frames = 0;   ///< ≥ 1
+  double fps = 24;  ///< > 0; frame f is at f / fps seconds
   layers::ivec2 display_px{1024, 1024};
   std::shared_ptr<const layers::Scene> scene;
   std::vector<layers::LayerSpec> layer_specs;  ///< what the author, or the model, asks for

@@ -111,12 +111,13 @@ Table<File> pipeline_keys() {
 }
 
 /// A variant says `extends: FILE` and then only what is different at the top level.
-YamlMap read_with_base(const std::string& file, int depth) {
+YamlMap read_with_base(const std::string& file, int depth, std::vector<std::string>& files) {
   YamlMap own = read_yaml_file(file);
+  files.push_back(file);
   const YamlValue* base = own.find("extends");
   if (!base) return own;
   if (depth >= kMaxDepthOfExtends) base->fail("at most 8 files that extend each other, never in a circle");
-  YamlMap merged = read_with_base(resolve_asset(base->text(), file, base->line()), depth + 1);
+  YamlMap merged = read_with_base(resolve_asset(base->text(), file, base->line()), depth + 1, files);
   merged.replace_by(own);
   return merged;
 }
@@ -139,7 +140,7 @@ SequenceFile read_sequence_file(const std::string& file) {
   SequenceFile result;
   result.settings.file = file;
   result.settings.name = std::filesystem::path(file).stem().string();
-  sequence_keys().keys().read(read_with_base(file, 0), &result);
+  sequence_keys().keys().read(read_with_base(file, 0, result.settings.content_files), &result);
   return result;
 }
 

@@ -32,7 +32,8 @@ void read_heights(const YamlValue& value, TerrainContent& terrain) {
 }
 
 void read_class_list(const YamlValue& value, TerrainContent& terrain) {
-  terrain.classes = read_ground_classes(asset().read(value));
+  terrain.list_file = asset().read(value);
+  terrain.classes = read_ground_classes(terrain.list_file);
 }
 
 void read_class_textures(const YamlValue& value, TerrainContent& terrain) {

@@ -12,6 +12,7 @@
 #include "chunker/texture.h"
 #include "layers/check.h"
 #include "layers/shading.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 namespace {
@@ -245,7 +246,7 @@ void order_by_groups(Variant& variant) {
 
 void stop_following_light(regulator::RegulatorOptions& options) {
   options.color_warp = false;
-  options.photometric = options.light_angle_rad = 0;
+  options.thresholds.photometric = options.thresholds.light_angle_rad = 0;
 }
 
 void remove(Variant& variant, Effect effect) {

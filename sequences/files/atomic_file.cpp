@@ -3,29 +3,18 @@
 
 #include <fcntl.h>
 #include <unistd.h>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <exception>
-#include <filesystem>
 #include <string_view>
+
+#include "sequences/files/temporary_files.h"
 
 namespace talisman::sequences {
 namespace {
 
-namespace fs = std::filesystem;
-
 [[noreturn]] void fail(const std::string& path, int error) {
   throw OutputError(path + ": cannot be written: " + std::strerror(error));
-}
-
-/// Hidden, in the same folder (a rename never crosses devices), unique among processes and threads. The
-/// extension stays last.
-std::string temporary_name(const std::string& path) {
-  static std::atomic<unsigned> counter{0};
-  const fs::path target(path);
-  const std::string unique = ".tmp-" + std::to_string(::getpid()) + "-" + std::to_string(counter++) + "-";
-  return (target.parent_path() / (unique + target.filename().string())).string();
 }
 
 class Descriptor {

@@ -184,6 +184,13 @@ std::string failure(const Outcome& outcome, const ImportLimits& limits) {
 
 }  // namespace
 
+std::vector<std::string> files_read(const ImportedModel& model) {
+  std::vector<std::string> files;
+  for (const FileUse& use : model.files)
+    if (use.kind == FileUse::Kind::Content) files.push_back(use.path);
+  return files;
+}
+
 ImportedModel import_model(const std::string& path, const ImportLimits& limits) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))

@@ -46,6 +46,9 @@ struct ImportedModel {
   std::vector<FileUse> files = {};  ///< all that the reader asked of the file system
 };
 
+/// The files that were read for it: the model itself, parts of it, its textures.
+std::vector<std::string> files_read(const ImportedModel& model);
+
 /// Reads a model with its materials, textures, node animation, skins, cameras and lights. Throws InputError
 /// that names the file and what is wrong with it (missing, truncated, crashed its reader, took longer than …,
 /// not-a-number positions, indices out of range). Cost: a process start (about 0.4 s, nearly all of it for

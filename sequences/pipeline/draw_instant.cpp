@@ -46,10 +46,10 @@ regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState&
   const auto serves = [&judge](int instant, int shown_at) { return judge.serves(instant, shown_at); };
   if (options.policy == regulator::Policy::Oracle)
     return regulator::longest_run(frame, regulator::Instants{0, last}, last, serves);
-  if (!predicts(pipeline)) return regulator::longest_run(frame, options.lookahead_frames, last, serves);
+  if (!predicts(pipeline)) return regulator::longest_run(frame, options.lookahead.frames, last, serves);
   // What is expected holds for a while only: a sprite of N frames ahead serves about as long after as before.
-  const std::int64_t horizon = frame + 2 * std::int64_t{options.lookahead_frames};
-  return regulator::longest_run(frame, options.lookahead_frames,
+  const std::int64_t horizon = frame + 2 * std::int64_t{options.lookahead.frames};
+  return regulator::longest_run(frame, options.lookahead.frames,
                                 static_cast<int>(std::min<std::int64_t>(last, horizon)), serves);
 }
 

@@ -52,7 +52,7 @@ struct FrameReport {
   std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
   chunker::CompositeCounters composite;
   std::optional<CompressionReport> compression;  ///< of the sprites drawn for this frame, and of its reads
-  std::int64_t sprite_bytes = 0;                 ///< in the store after this frame
+  std::int64_t sprite_bytes = 0;                 ///< of the sprites shown, as they are stored
   ShadeCounters shade;                           ///< passes behind shadows and reflections, as planned
   int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap

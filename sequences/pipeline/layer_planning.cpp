@@ -96,7 +96,7 @@ bool looks_ahead(const Pipeline& pipeline) {
 
 bool predicts(const Pipeline& pipeline) {
   return pipeline.settings.regulator.policy == regulator::Policy::Lookahead &&
-         pipeline.settings.regulator.predict == regulator::Prediction::Linear;
+         pipeline.settings.regulator.lookahead.predict == regulator::Prediction::Linear;
 }
 
 double time_of(const Pipeline& pipeline, int frame) { return frame / pipeline.settings.fps; }

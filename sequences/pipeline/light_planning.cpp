@@ -20,7 +20,7 @@ void name(const layers::Scene& scene, fiducials::LightRef& light) {
 layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const layers::Layer& layer,
                                              layers::LayerBound bound) {
   const regulator::RegulatorOptions& options = pipeline.settings.regulator;
-  bound.follows_faces = options.turned_px > 0;
+  bound.follows_faces = options.thresholds.turned_px > 0;
   bound.surface.reset();
   bound.surface_why_not = "no option follows the light";
   if (!regulator::follows_light(options)) return bound;

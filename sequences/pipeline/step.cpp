@@ -192,6 +192,17 @@ chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& 
   return model_chunk_reads(placed, pipeline.settings.view.display_px);
 }
 
+/// Of what the frame shows. What else the store holds depends on which frames before were drawn.
+std::int64_t bytes_shown(const PipelineState& state, const FrameReport& report) {
+  std::int64_t sum = 0;
+  for (const ShownSprite& shown : report.shown) {
+    const auto compressed = state.compressed.find(shown.layer);
+    const chunker::Sprite* sprite = state.sprites.find(shown.layer);
+    sum += compressed != state.compressed.end() ? compressed->second.bytes() : sprite ? sprite->bytes() : 0;
+  }
+  return sum;
+}
+
 void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
           const chunker::PreparedScene& prepared, FrameReport& report) {
   chunker::CompositeResult result;
@@ -213,7 +224,7 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
   }
   report.picture = std::move(result.frame);
   report.composite = result.counters;
-  report.sprite_bytes = state.sprites.bytes();
+  report.sprite_bytes = bytes_shown(state, report);
 }
 
 }  // namespace

@@ -1,123 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/run.h"
 
-#include <cmath>
-#include <cstdio>
-#include <filesystem>
 #include <map>
 #include <memory>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/files/atomic_file.h"
-#include "sequences/files/folders.h"
 #include "sequences/files/frame_writer.h"
 #include "sequences/files/line_file.h"
 #include "sequences/files/video.h"
 #include "sequences/pictures/overlay.h"
 #include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/make_pipeline.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/pipeline/stopwatch.h"
+#include "sequences/results/run_folder.h"
+#include "sequences/results/run_identity.h"
 #include "sequences/results/separate_pictures.h"
+#include "sequences/results/timing.h"
 
 namespace talisman::sequences {
 
 namespace {
-
-namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
-
-const char* extension_of(FrameFormat format) {
-  switch (format) {
-    case FrameFormat::Png:
-      return ".png";
-    case FrameFormat::Exr:
-      return ".exr";
-    case FrameFormat::None:
-      return "";
-  }
-  return "";
-}
-
-std::string frame_path(const RunOptions& options, int frame) {
-  char name[32];
-  std::snprintf(name, sizeof name, "%04d%s", frame, extension_of(options.format));
-  return options.out + "/frames/" + name;
-}
-
-/// Everything that the bytes of the results depend on. A run can be resumed only with the same.
-Json identity_of(const Sequence& sequence, const Settings& s, const RunOptions& o) {
-  const regulator::RegulatorOptions& r = s.regulator;
-  return {{"schema", "talisman.run/1"},
-          {"sequence", sequence.name},
-          {"frames", {o.first_frame, o.last_frame}},
-          {"display_px", {s.view.display_px.x, s.view.display_px.y}},
-          {"policy", regulator::name(r.policy)},
-          {"geometric_px", r.geometric_px},
-          {"hold_frames", r.hold_frames},
-          {"lookahead", {r.lookahead_frames, s.frames}},
-          {"predict", regulator::name(r.predict)},
-          {"budget",
-           {r.budget_polygons, r.budget_pixels, r.budget_chunks,
-            std::isfinite(r.budget_ms) ? Json(r.budget_ms) : Json(nullptr), r.cutoff_px, r.min_resolution}},
-          {"budget_gap", s.budget_gap},
-          {"sampling", {r.magnification, r.minification, r.anisotropy}},
-          {"uncovered_px", r.uncovered_px},
-          {"warp", warp::name(s.curve)},
-          {"bound", static_cast<int>(s.bound)},
-          {"cycles", s.cycles == Cycles::Merge ? "merge" : "keep"},
-          {"compositor", s.compositor == Compositor::Talisman ? "talisman" : "extended"},
-          {"extents", {s.extents.expected_reuse_frames, s.extents.max_growth, s.view.clip_margin}},
-          {"placement",
-           {s.placement.slab_directions, s.placement.min_rotation_gain, s.placement.resolution_scale}},
-          {"shading", static_cast<int>(s.render.shading)},
-          {"compression", s.compression ? s.compression->quality : 0},
-          {"format", static_cast<int>(o.format)},
-          {"overlay", o.overlay},
-          {"quality", o.quality}};
-}
-
-/// First entry in which two identities differ, as "geometric_px was 4, is 8"; empty if they are the same.
-std::string first_difference(const Json& before, const Json& now) {
-  for (const auto& [key, value] : now.items())
-    if (!before.contains(key) || before[key] != value)
-      return key + " was " + (before.contains(key) ? before[key].dump() : "absent") + ", is " + value.dump();
-  return {};
-}
-
-/// Lines of frames that an earlier run completed, by frame.
-std::map<int, FrameLine> complete_frames(const RunOptions& options, const Json& identity) {
-  std::map<int, FrameLine> kept;
-  const std::string run_file = options.out + "/run.json";
-  const std::vector<std::string> identity_lines = lines_written(run_file);
-  if (identity_lines.empty()) return kept;  // nothing was begun: start from the beginning
-  const Json before = Json::parse(identity_lines.front(), nullptr, false);
-  if (before.is_discarded()) throw InputError("not a run file, must be written by talisman", run_file);
-  if (const std::string difference = first_difference(before, identity); !difference.empty())
-    throw InputError(difference + ", --resume must continue with the same options", run_file);
-  for (const std::string& text : lines_written(options.out + "/frames.jsonl")) {
-    const std::optional<FrameLine> line = frame_line_from_json(text);
-    if (!line || line->frame_hash.empty()) continue;
-    if (options.format == FrameFormat::None || fs::exists(frame_path(options, line->frame)))
-      kept[line->frame] = *line;
-  }
-  return kept;
-}
-
-/// What an earlier run left behind must not be taken for a result of this one. Pictures are removed only
-/// where run.json says that the folder is ours, and only those with our names.
-void remove_old_results(const RunOptions& options) {
-  const bool ours = fs::exists(options.out + "/run.json");
-  for (const char* name : {"summary.json", "frames.jsonl", "frames.jsonl.partial", "decisions.jsonl"})
-    fs::remove(options.out + "/" + name);
-  if (options.plan_only || !ours) return;
-  fs::remove(options.out + "/video.mp4");
-  for (const fs::directory_entry& entry : fs::directory_iterator(options.out + "/frames")) {
-    const std::string stem = entry.path().stem().string(), extension = entry.path().extension().string();
-    const bool numbered = !stem.empty() && stem.find_first_not_of("0123456789") == std::string::npos;
-    if (numbered && (extension == ".png" || extension == ".exr")) fs::remove(entry.path());
-  }
-}
 
 FrameQuality judge(const Pipeline& pipeline, const FrameReport& report,
                    const chunker::PreparedScene& prepared) {
@@ -158,17 +63,12 @@ class Runner {
       : options_(options),
         pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)),
         state_(pipeline_) {
-    create_folder(options.out);
-    if (!options.plan_only) create_folder(options.out + "/frames");
-    if (options.separate) create_folder(options.out + "/separate");
-    const Json identity = identity_of(sequence, settings, options);
-    if (options.resume) kept_ = complete_frames(options, identity);
-    if (kept_.empty()) remove_old_results(options);
-    if (!options.plan_only) write_text_atomically(options.out + "/run.json", identity.dump() + "\n");
-    std::vector<std::string> kept_lines;
-    for (const auto& [frame, line] : kept_) kept_lines.push_back(json_of(line));
+    KeptRun kept = begin_run(options, run_json(sequence, settings, options));
+    kept_ = std::move(kept.frames);
     decisions_ = std::make_unique<LineFile>(options.out + "/decisions.jsonl");
-    frames_ = std::make_unique<LineFile>(options.out + "/frames.jsonl", kept_lines);
+    frames_ = std::make_unique<LineFile>(options.out + "/frames.jsonl", lines_of(kept_));
+    timing_ = std::make_unique<LineFile>(options.out + "/timing.jsonl", kept.timing);
+    timing_->write(process_json());
     summary_ = start_summary(pipeline_, sequence.name);
     summary_.planned_only = options.plan_only;
     if (!options.plan_only)
@@ -205,18 +105,37 @@ class Runner {
 
   void finish(double fps) {
     decisions_->finish();
-    frames_->finish();
+    finish_frame_lines();
+    timing_->write(total_timing_json(summary_));
+    timing_->finish();
     if (options_.video)
       write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
     write_text_atomically(options_.out + "/summary.json", json_of(summary_));
   }
 
  private:
+  static std::vector<std::string> lines_of(const std::map<int, FrameLine>& frames) {
+    std::vector<std::string> lines;
+    for (const auto& [frame, line] : frames) lines.push_back(json_of(line));
+    return lines;
+  }
+
+  /// Frames that were drawn later than others behind them, because their picture was missing, get their place.
+  void finish_frame_lines() {
+    if (!kept_.empty()) {
+      std::map<int, FrameLine> in_order;
+      for (const FrameLine& line : lines_) in_order[line.frame] = line;
+      frames_ = std::make_unique<LineFile>(options_.out + "/frames.jsonl", lines_of(in_order));
+    }
+    frames_->finish();
+  }
+
   /// The frame is finished by the writer while the next one is drawn. Jobs are copied, pictures are not.
   void hand_over(FrameReport report) {
     std::optional<FrameQuality> quality;
     if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
-    if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
+    if (prepared_ && options_.separate)
+      write_separate(pipeline_, state_, report, options_.out + "/separate");
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     writer_.submit([this, shared, quality] { finish_frame(*shared, quality); });
   }
@@ -227,9 +146,10 @@ class Runner {
     if (prepared_) {
       const Stopwatch watch;
       write_picture(report, options_);
-      line.io_ms = watch.ms();
+      line.times.io_ms = watch.ms();
     }
-    frames_->write(json_of(line));
+    timing_->write(timing_json(line));
+    frames_->write(json_of(line));  // last: with it the frame is complete
     add_line(line);
   }
 
@@ -242,7 +162,7 @@ class Runner {
   Pipeline pipeline_;
   PipelineState state_;
   std::map<int, FrameLine> kept_;
-  std::unique_ptr<LineFile> decisions_, frames_;
+  std::unique_ptr<LineFile> decisions_, frames_, timing_;
   std::unique_ptr<chunker::PreparedScene> prepared_;
   Summary summary_;
   std::vector<FrameLine> lines_;   ///< the writer's alone until it has finished

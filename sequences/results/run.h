@@ -3,30 +3,18 @@
 
 /// A whole run: frame after frame through `step`, results into a folder.
 ///
-/// The plan always starts at frame 0, whatever range is asked for, so a frame has the same bytes however it
-/// is reached. Frames are written while the next ones are drawn (frame_writer.h). A frame is complete when
-/// its picture has its final name and its line is in frames.jsonl.partial; --resume keeps complete frames and
-/// goes on with the rest.
+/// The plan always starts at frame 0, whatever range is asked for, so a frame has the same bytes however it is
+/// reached. Frames are written while the next ones are drawn (frame_writer.h). A frame is complete when its picture
+/// has its final name and its line is in frames.jsonl.partial; --resume keeps complete frames and goes on with the
+/// rest.
 
 #include <atomic>
-#include <string>
 
 #include "sequences/content/sequence.h"
-#include "sequences/files/image_io.h"
-#include "sequences/files/progress.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/run_options.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
-
-struct RunOptions {
-  std::string out;                      ///< result folder, made if missing
-  int first_frame = 0, last_frame = 0;  ///< inclusive
-  FrameFormat format = FrameFormat::Png;
-  bool plan_only = false;  ///< decisions and costs without pixels
-  bool separate = false;   ///< also each shade sprite alone, and the sums, in DIR/separate
-  bool video = false, overlay = false, quality = false, resume = false;
-  ProgressKind progress = ProgressKind::Auto;
-};
 
 struct RunOutcome {
   Summary summary;

@@ -30,9 +30,9 @@ struct Workload {
   explicit Workload(regulator::Policy policy, sequences::Cycles cycles = sequences::Cycles::Keep) {
     settings.cycles = cycles;
     settings.regulator.policy = policy;
-    settings.regulator.geometric_px = 1;
-    settings.regulator.budget_polygons = kLayers * 12 / 2;
-    settings.regulator.budget_pixels = 300'000;
+    settings.regulator.thresholds.geometric_px = 1;
+    settings.regulator.budget.polygons = kLayers * 12 / 2;
+    settings.regulator.budget.pixels = 300'000;
     settings.frames = kFrames;
   }
 };

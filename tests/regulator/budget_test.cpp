@@ -36,8 +36,8 @@ LayerAssessment layer_of(int id, double error_px, std::int64_t polygons, std::in
 RegulatorOptions budget_of(std::int64_t polygons, std::int64_t pixels = kNoLimit) {
   RegulatorOptions options;
   options.policy = Policy::Budget;
-  options.budget_polygons = polygons;
-  options.budget_pixels = pixels;
+  options.budget.polygons = polygons;
+  options.budget.pixels = pixels;
   return options;
 }
 
@@ -138,7 +138,7 @@ TEST(PolicyBudget, PixelsAreABudgetOfTheirOwn) {
 
 TEST(PolicyBudget, ChunksAreABudgetOfTheirOwn) {
   RegulatorOptions options = budget_of(kNoLimit);
-  options.budget_chunks = 2;
+  options.budget.chunks = 2;
   const auto decisions = decide({layer_of(0, 8, 10), layer_of(1, 7, 10), layer_of(2, 6, 10)}, options);
   EXPECT_THAT(rendered(decisions), ElementsAre(0, 1));
   EXPECT_THAT(decisions[2].reason, HasSubstr("chunks 1 > 0 left of 2"));
@@ -172,7 +172,7 @@ TEST(PolicyBudget, BudgetBelowTheCheapestLayerDrawsNothing) {
 
 TEST(FrameBudget, TimeLimitsPolygonsAndPixelsSoThatTheModelledRenderFits) {
   RegulatorOptions options;
-  options.budget_ms = 2;
+  options.budget.ms = 2;
   const Budget budget = frame_budget(options);
   EXPECT_EQ(budget.polygons, 3000);
   EXPECT_EQ(budget.pixels, 80'000);
@@ -180,9 +180,9 @@ TEST(FrameBudget, TimeLimitsPolygonsAndPixelsSoThatTheModelledRenderFits) {
   EXPECT_LE(modelled_time(talisman_1996(), budget.polygons, budget.pixels, 0).render_ms, 2);
   EXPECT_GT(modelled_time(talisman_1996(), budget.polygons + 1, 0, 0).render_ms, 2);
   EXPECT_GT(modelled_time(talisman_1996(), 0, budget.pixels + 1, 0).render_ms, 2);
-  options.budget_polygons = 10;
+  options.budget.polygons = 10;
   EXPECT_EQ(frame_budget(options).polygons, 10) << "the scarcer of two limits holds";
-  options.budget_ms = 1e300;
+  options.budget.ms = 1e300;
   EXPECT_EQ(frame_budget(options).pixels, kNoLimit);
   EXPECT_FALSE(is_limited(RegulatorOptions{}));
 }
@@ -190,20 +190,20 @@ TEST(FrameBudget, TimeLimitsPolygonsAndPixelsSoThatTheModelledRenderFits) {
 TEST(PolicyBudget, TimeIsNamedInTheReason) {
   RegulatorOptions options;
   options.policy = Policy::Budget;
-  options.budget_ms = 2;
+  options.budget.ms = 2;
   const auto decisions = decide({layer_of(0, 8, 2000), layer_of(1, 7, 2000)}, options);
   EXPECT_THAT(decisions[1].reason, HasSubstr("polygons 2000 > 1000 left of 3000 in 2 ms"));
 }
 
 TEST(RegulatorOptions, BudgetsOutOfRangeAreDefects) {
   RegulatorOptions options;
-  options.budget_chunks = -1;
+  options.budget.chunks = -1;
   EXPECT_EQ(first_defect(options), "budget_chunks is -1, must be at least 0");
   options = {};
-  options.budget_ms = NAN;
+  options.budget.ms = NAN;
   EXPECT_THAT(first_defect(options), HasSubstr("budget_ms"));
   options = {};
-  options.min_resolution = 0;
+  options.budget.min_resolution = 0;
   EXPECT_EQ(first_defect(options), "min_resolution is 0, must be above 0 and at most 1");
 }
 

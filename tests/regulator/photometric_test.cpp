@@ -42,7 +42,7 @@ TEST(ViolationOf, PhotometricErrorNamesItsLight) {
 TEST(ViolationOf, LightAngleIsRegulatedOnlyWhereItIsAskedFor) {
   RegulatorOptions options;
   EXPECT_EQ(violation_of(lit_layer(0, 1), options), "");
-  options.light_angle_rad = 0.25;
+  options.thresholds.light_angle_rad = 0.25;
   EXPECT_EQ(violation_of(lit_layer(0, 0.5), options),
             "photometric: light angle 0.5 > 0.25 rad (light 'sun')");
   LayerAssessment shiny = lit_layer(0, 0.5);
@@ -52,11 +52,11 @@ TEST(ViolationOf, LightAngleIsRegulatedOnlyWhereItIsAskedFor) {
 
 TEST(ViolationOf, ZeroSwitchesPhotometryOffAndNotComputedNeverViolates) {
   RegulatorOptions off;
-  off.photometric = 0;
+  off.thresholds.photometric = 0;
   EXPECT_EQ(violation_of(lit_layer(1.7, 3), off), "");
   LayerAssessment unlit = lit_layer(1.7, 3);
   unlit.fiducials.photometric.computed = false;
-  off.photometric = off.light_angle_rad = 0.01;
+  off.thresholds.photometric = off.thresholds.light_angle_rad = 0.01;
   EXPECT_EQ(violation_of(unlit, off), "");
 }
 
@@ -68,7 +68,7 @@ TEST(ViolationOf, TurnedSidesAreRegulatedOnlyWhereTheyAreAskedFor) {
   layer.fiducials.turned.px = 40;
   RegulatorOptions options;
   EXPECT_EQ(violation_of(layer, options), "");
-  options.turned_px = 32;
+  options.thresholds.turned_px = 32;
   EXPECT_EQ(violation_of(layer, options), "visibility: side turned to the eye 40 > 32 px");
 }
 
@@ -103,9 +103,9 @@ TEST(FollowsLight, OnlyWhereOldSpritesAreCarriedByWarps) {
   options.policy = Policy::Threshold;
   options.color_warp = false;
   EXPECT_TRUE(follows_light(options));
-  options.photometric = 0;
+  options.thresholds.photometric = 0;
   EXPECT_FALSE(follows_light(options));
-  options.light_angle_rad = 0.1;
+  options.thresholds.light_angle_rad = 0.1;
   EXPECT_TRUE(follows_light(options));
 }
 
@@ -115,13 +115,13 @@ TEST(FirstDefect, OfPhotometricThresholds) {
     set(options);
     return first_defect(options);
   };
-  EXPECT_EQ(defect([](RegulatorOptions& o) { o.photometric = -1; }),
+  EXPECT_EQ(defect([](RegulatorOptions& o) { o.thresholds.photometric = -1; }),
             "photometric is -1, must be at least 0 (0: off)");
-  EXPECT_NE(defect([](RegulatorOptions& o) { o.photometric = std::nan(""); }), "");
-  EXPECT_NE(defect([](RegulatorOptions& o) { o.light_angle_rad = 3.2; }), "");
-  EXPECT_NE(defect([](RegulatorOptions& o) { o.light_angle_rad = std::nan(""); }), "");
-  EXPECT_NE(defect([](RegulatorOptions& o) { o.turned_px = -1; }), "");
-  EXPECT_EQ(defect([](RegulatorOptions& o) { o.light_angle_rad = 3.14159; }), "");
+  EXPECT_NE(defect([](RegulatorOptions& o) { o.thresholds.photometric = std::nan(""); }), "");
+  EXPECT_NE(defect([](RegulatorOptions& o) { o.thresholds.light_angle_rad = 3.2; }), "");
+  EXPECT_NE(defect([](RegulatorOptions& o) { o.thresholds.light_angle_rad = std::nan(""); }), "");
+  EXPECT_NE(defect([](RegulatorOptions& o) { o.thresholds.turned_px = -1; }), "");
+  EXPECT_EQ(defect([](RegulatorOptions& o) { o.thresholds.light_angle_rad = 3.14159; }), "");
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ LayerDecision decide(const LayerAssessment& layer, const RegulatorOptions& optio
 RegulatorOptions threshold_of(double px) {
   RegulatorOptions options;
   options.policy = Policy::Threshold;
-  options.geometric_px = px;
+  options.thresholds.geometric_px = px;
   return options;
 }
 
@@ -168,8 +168,8 @@ TEST(PolicyThreshold, EachSamplingAndVisibilityFiducialCanDecideAlone) {
 
 TEST(PolicyThreshold, SwitchedOffFiducialsDoNotDecide) {
   RegulatorOptions options = threshold_of(4);
-  options.magnification = options.minification = options.anisotropy = 0;
-  options.uncovered_px = -1;
+  options.thresholds.magnification = options.thresholds.minification = options.thresholds.anisotropy = 0;
+  options.thresholds.uncovered_px = -1;
   LayerAssessment layer = layer_with_error(1);
   layer.fiducials.sampling = {100, 0.01, 1e4, {0, 0}};
   layer.fiducials.visibility.computed = true;
@@ -216,24 +216,27 @@ TEST(PolicyThreshold, MoreThresholdNeverMeansMoreRendersForTheSameAssessments) {
 TEST(RegulatorOptions, DefectsNameOptionValueAndRule) {
   RegulatorOptions options;
   EXPECT_EQ(first_defect(options), "");
-  options.geometric_px = -1;
+  options.thresholds.geometric_px = -1;
   EXPECT_EQ(first_defect(options), "geometric_px is -1, must be at least 0");
   options = {};
   options.hold_frames = 0;
   EXPECT_EQ(first_defect(options), "hold_frames is 0, must be at least 1");
   options = {};
-  options.lookahead_frames = -1;
+  options.lookahead.frames = -1;
   EXPECT_EQ(first_defect(options), "lookahead_frames is -1, must be at least 0");
   options = {};
-  options.budget_pixels = -1;
+  options.budget.pixels = -1;
   EXPECT_EQ(first_defect(options), "budget_pixels is -1, must be at least 0");
-  for (double RegulatorOptions::*field :
-       {&RegulatorOptions::geometric_px, &RegulatorOptions::magnification, &RegulatorOptions::minification,
-        &RegulatorOptions::anisotropy, &RegulatorOptions::uncovered_px, &RegulatorOptions::cutoff_px}) {
+  for (double Thresholds::*field :
+       {&Thresholds::geometric_px, &Thresholds::magnification, &Thresholds::minification,
+        &Thresholds::anisotropy, &Thresholds::uncovered_px}) {
     options = {};
-    options.*field = NAN;
+    options.thresholds.*field = NAN;
     EXPECT_NE(first_defect(options), "");
   }
+  options = {};
+  options.budget.cutoff_px = NAN;
+  EXPECT_NE(first_defect(options), "");
 }
 
 TEST(RegulatorOptions, PolicyNamesRoundTrip) {

@@ -42,7 +42,7 @@ LayerAssessment resting_layer(int id, std::int64_t pixels, double resolution) {
 RegulatorOptions pixels_of(std::int64_t pixels) {
   RegulatorOptions options;
   options.policy = Policy::Budget;
-  options.budget_pixels = pixels;
+  options.budget.pixels = pixels;
   return options;
 }
 
@@ -60,20 +60,20 @@ TEST(ShareOfResolution, IsTheRootOfTheShareOfArea) {
 TEST(ShareOfResolution, PolygonsAloneDoNotLowerIt) {
   RegulatorOptions options;
   options.policy = Policy::Budget;
-  options.budget_polygons = 1;
+  options.budget.polygons = 1;
   EXPECT_EQ(share_of({changed_layer(0, 1'000'000)}, options), 1);
 }
 
 TEST(ShareOfResolution, TheScarcerOfPixelsAndChunksDecides) {
   RegulatorOptions options = pixels_of(1024 * 25);
-  options.budget_chunks = 4;
+  options.budget.chunks = 4;
   EXPECT_DOUBLE_EQ(share_of({changed_layer(0, 1024 * 100)}, options), 0.2) << "4 of 100 chunks";
 }
 
 TEST(ShareOfResolution, TimeIsPixelsAndPolygons) {
   RegulatorOptions options;
   options.policy = Policy::Budget;
-  options.budget_ms = 1;  // 40,000 pixels and 1500 polygons
+  options.budget.ms = 1;  // 40,000 pixels and 1500 polygons
   EXPECT_DOUBLE_EQ(share_of({changed_layer(0, 160'000)}, options), 0.5);
 }
 
@@ -88,7 +88,7 @@ TEST(ShareOfResolution, OnlyTheSelectedAreCounted) {
 
 TEST(ShareOfResolution, WhoLacksPolygonsNeedsNoArea) {
   RegulatorOptions options = pixels_of(1000);
-  options.budget_polygons = 100;
+  options.budget.polygons = 100;
   EXPECT_EQ(share_of({changed_layer(0, 1000, 60), changed_layer(1, 9000, 60)}, options), 1)
       << "layer 1 is deferred for its polygons in any case";
 }
@@ -105,7 +105,7 @@ TEST(RegulatedResolution, ChangesByATenthAtMost) {
 
 TEST(RegulatedResolution, FirstAppearancesTakeTheShareAtOnce) {
   EXPECT_DOUBLE_EQ(regulated_resolution(new_layer(0, 1000), 0.3, {}), 0.3);
-  EXPECT_DOUBLE_EQ(regulated_resolution(new_layer(0, 1000), 0, {}), RegulatorOptions{}.min_resolution);
+  EXPECT_DOUBLE_EQ(regulated_resolution(new_layer(0, 1000), 0, {}), RegulatorOptions{}.budget.min_resolution);
 }
 
 TEST(RegulatedResolution, EveryFrameWaitedGivesUpAnotherTenthDownToTheLeast) {
@@ -117,12 +117,12 @@ TEST(RegulatedResolution, EveryFrameWaitedGivesUpAnotherTenthDownToTheLeast) {
     before = now;
   }
   layer.frames_short_of_area = 1'000'000'000;  // returns at once
-  EXPECT_EQ(regulated_resolution(layer, 0.95, {}), RegulatorOptions{}.min_resolution);
+  EXPECT_EQ(regulated_resolution(layer, 0.95, {}), RegulatorOptions{}.budget.min_resolution);
 }
 
 TEST(RegulatedResolution, LeastOfOneNeverLowersIt) {
   RegulatorOptions sharp;
-  sharp.min_resolution = 1;
+  sharp.budget.min_resolution = 1;
   LayerAssessment layer = changed_layer(0, 1000);
   layer.frames_short_of_area = 9;
   EXPECT_EQ(regulated_resolution(layer, 0, sharp), 1);

@@ -36,7 +36,7 @@ inline Show run(const Room& room, regulator::Policy policy, int frames, bool dra
   sequences::Settings settings;
   settings.view.display_px = {160, 120};
   settings.regulator.policy = policy;
-  settings.regulator.geometric_px = geometric_px;
+  settings.regulator.thresholds.geometric_px = geometric_px;
   settings.frames = frames;
   const sequences::Pipeline pipeline = sequences::make_pipeline(room.scene, result.layers, settings);
   const chunker::PreparedScene prepared(room.scene);

@@ -24,12 +24,12 @@ struct SmallRun {
 
   SmallRun& policy(regulator::Policy policy, double geometric_px = 4) {
     settings.regulator.policy = policy;
-    settings.regulator.geometric_px = geometric_px;
+    settings.regulator.thresholds.geometric_px = geometric_px;
     return *this;
   }
 
   SmallRun& lookahead(int frames) {
-    settings.regulator.lookahead_frames = frames;
+    settings.regulator.lookahead.frames = frames;
     return *this;
   }
 

@@ -120,7 +120,7 @@ sequences::Variant every_effect(int frames) {
   sequence.display_px = {96, 72};
   sequence.compression = chunker::CompressionOptions{};
   sequence.regulator.policy = regulator::Policy::Threshold;
-  sequence.regulator.geometric_px = 1;
+  sequence.regulator.thresholds.geometric_px = 1;
   sequence.layer_specs = room.specs;
   sequence.layers = layers::factor(room.scene, room.specs);
   sequence.scene = std::make_shared<const Scene>(std::move(room.scene));

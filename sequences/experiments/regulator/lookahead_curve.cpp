@@ -6,6 +6,7 @@
 
 #include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 namespace {
@@ -20,7 +21,8 @@ struct Prediction {
 };
 constexpr std::array kPredictions = {
     Prediction{"known motion", [](RegulatorOptions&) {}},
-    Prediction{"predicted linearly", [](RegulatorOptions& o) { o.predict = regulator::Prediction::Linear; }},
+    Prediction{"predicted linearly",
+               [](RegulatorOptions& o) { o.lookahead.predict = regulator::Prediction::Linear; }},
 };
 
 Summary plan_of(const Sequence& sequence, Settings settings, const RegulatorOptions& options,
@@ -56,7 +58,7 @@ LookaheadCurve lookahead_curve(const Sequence& sequence, const Settings& setting
                                const ExperimentFrames& frames) {
   RegulatorOptions options = settings.regulator;
   LookaheadCurve curve;
-  curve.geometric_px = options.geometric_px;
+  curve.geometric_px = options.thresholds.geometric_px;
   curve.display_px = settings.view.display_px;
   options.policy = Policy::Threshold;
   const LookaheadPoint threshold = point_of(plan_of(sequence, settings, options, frames), "", 0);
@@ -68,7 +70,7 @@ LookaheadCurve lookahead_curve(const Sequence& sequence, const Settings& setting
   for (const Prediction& prediction : kPredictions)
     for (const int lookahead : compared_lookaheads()) {
       RegulatorOptions predicted = options;
-      predicted.lookahead_frames = lookahead;
+      predicted.lookahead.frames = lookahead;
       prediction.choose(predicted);
       curve.points.push_back(
           point_of(plan_of(sequence, settings, predicted, frames), prediction.name, lookahead));

@@ -15,9 +15,9 @@ Settings with(Settings settings, const RegulatorSetting& setting) {
   return settings;
 }
 
-Timing timing_of(const std::vector<FrameLine>& lines, double FrameLine::*field) {
+Timing timing_of(const std::vector<FrameLine>& lines, double FrameTimes::*stage) {
   std::vector<double> ms;
-  for (const FrameLine& line : lines) ms.push_back(line.*field);
+  for (const FrameLine& line : lines) ms.push_back(line.times.*stage);
   if (ms.empty()) return {};
   return {std::accumulate(ms.begin(), ms.end(), 0.0) / static_cast<double>(ms.size()), median(ms)};
 }
@@ -57,8 +57,8 @@ SettingResult SettingRun::result() const {
   result.setting = setting_;
   result.mean_update_rate = summary_.mean_update_rate();
   result.weighted_update_rate = summary_.cost_weighted_update_rate();
-  result.polygons = summary_.total(&FrameLine::polygons_rendered);
-  result.pixels = summary_.total(&FrameLine::pixels_rendered);
+  result.polygons = summary_.polygons_rendered();
+  result.pixels = summary_.pixels_rendered();
   result.chunks = chunks_;
   double error_px = 0;
   int shown = 0;
@@ -69,10 +69,11 @@ SettingResult SettingRun::result() const {
     result.max_geometric_px = std::max(result.max_geometric_px, layer.max_geometric_px);
   }
   result.mean_geometric_px = shown > 0 ? error_px / shown : 0;
-  result.plan = timing_of(summary_.frames, &FrameLine::plan_ms);
-  result.render = timing_of(drawn_, &FrameLine::render_ms);
-  result.composite = timing_of(drawn_, &FrameLine::composite_ms);
-  result.modelled_ms = timing_of(drawn_, &FrameLine::modelled_ms).mean;
+  result.plan = timing_of(summary_.frames, &FrameTimes::plan_ms);
+  result.render = timing_of(drawn_, &FrameTimes::render_ms);
+  result.composite = timing_of(drawn_, &FrameTimes::composite_ms);
+  for (const FrameLine& line : drawn_) result.modelled_ms += line.modelled_ms;
+  if (!drawn_.empty()) result.modelled_ms /= static_cast<double>(drawn_.size());
   result.quality = summarize(qualities_).mean;
   result.popping = popping_.result();
   return result;

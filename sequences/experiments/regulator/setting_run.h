@@ -12,7 +12,7 @@
 #include "sequences/experiments/regulator/measured.h"
 #include "sequences/pictures/diff.h"
 #include "sequences/pipeline/step.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 

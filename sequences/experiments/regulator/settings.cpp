@@ -16,7 +16,7 @@ using regulator::RegulatorOptions;
 RegulatorOptions under(const RegulatorOptions& base, Policy policy) {
   RegulatorOptions options = base;
   options.policy = policy;
-  options.budget_polygons = options.budget_pixels = regulator::kNoLimit;
+  options.budget.polygons = options.budget.pixels = regulator::kNoLimit;
   return options;
 }
 
@@ -32,8 +32,8 @@ void add_thresholds(std::vector<RegulatorSetting>& settings, const RegulatorOpti
                     const std::string& series) {
   for (const double px : compared_thresholds()) {
     RegulatorOptions options = under(base, policy);
-    options.geometric_px = px;
-    options.lookahead_frames = kComparedLookahead;
+    options.thresholds.geometric_px = px;
+    options.lookahead.frames = kComparedLookahead;
     settings.push_back({series, "px", px, options});
   }
 }
@@ -42,7 +42,7 @@ void add_budgets(std::vector<RegulatorSetting>& settings, const RegulatorOptions
                  double polygons_per_frame) {
   for (const double percent : compared_budgets()) {
     RegulatorOptions options = under(base, Policy::Budget);
-    options.budget_polygons = std::llround(polygons_per_frame * percent / 100);
+    options.budget.polygons = std::llround(polygons_per_frame * percent / 100);
     settings.push_back({"budget", "%", percent, options});
   }
 }

@@ -75,8 +75,8 @@ class VariantRun {
   void count(const FrameReport& report) {
     const FrameLine line = line_of(report);
     measured_.renders += line.renders;
-    measured_.polygons += line.polygons_rendered;
-    measured_.pixels += line.pixels_rendered;
+    measured_.polygons += line.polygons.rendered;
+    measured_.pixels += line.pixels.rendered;
     measured_.counters += report.render;
     measured_.passes += report.shade;
     measured_.modelled_ms += line.modelled_ms;

@@ -19,9 +19,10 @@ Settings settings_for(const RateOptions& options, Curve curve, double threshold_
   settings.bound = options.bound;
   settings.curve = curve;
   settings.regulator.policy = regulator::Policy::Threshold;
-  settings.regulator.geometric_px = threshold_px;
-  settings.regulator.magnification = settings.regulator.minification = settings.regulator.anisotropy = 0;
-  settings.regulator.uncovered_px = -1;
+  regulator::Thresholds& thresholds = settings.regulator.thresholds;
+  thresholds.geometric_px = threshold_px;
+  thresholds.magnification = thresholds.minification = thresholds.anisotropy = 0;
+  thresholds.uncovered_px = -1;
   return settings;
 }
 

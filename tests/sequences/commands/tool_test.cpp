@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tool as a user meets it: exit codes, one clear error line, no half-written results, runs that can be
 // continued.
-#include <sys/wait.h>
-
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <sys/wait.h>
 #include <set>
 #include <string>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
+#include "tests/sequences/commands/tool.h"
 
 #include "tests/sequences/temporary_folder.h"
 
@@ -150,22 +147,9 @@ TEST_F(Tool, KilledRunContinuesWithTheSameBytes) {
 }
 
 TEST_F(Tool, RunKilledWhileLayersAreMergedContinuesWithTheSameBytes) {
-  // A ball passes through a wall again and again: aggregates come and go before, at and after the frame of
-  // the kill, and the resumed run must know their sprites and ids though it draws none of the frames that
-  // made them.
-  write(
-      "passing.yaml",
-      "frames: 40\nfps: 1\ndisplay: [480, 360]\n"
-      "shapes:\n  - {id: wall, box: [1, 4, 4], color: [0.6, 0.5, 0.4]}\n"
-      "  - {id: ball, sphere: 2, flight: [{t: 0, position: [5, 0, 0], target: [-100, 0, 0]},"
-      " {t: 10, position: [-5, 0, 0], target: [-100, 0, 0]}, {t: 20, position: [5, 0, 0], target: [-100, 0, "
-      "0]},"
-      " {t: 30, position: [-5, 0, 0], target: [-100, 0, 0]}]}\n"
-      "camera: {fov_deg: 60, near_m: 1, far_m: 100, position: [2, 1, 12], look_at: [0, 0, 0]}\n"
-      "lights:\n  - {kind: ambient, color: [0.3, 0.3, 0.3]}\n"
-      "  - {kind: spot, name: lamp, position: [9, 7, 3], look_at: [0, 0, 0], inner_deg: 30, outer_deg: 40,"
-      " casts_shadow: true}\n"
-      "layers:\n  - {name: wall, parts: [wall], shading: {shadows: {}}}\n  - {name: ball, parts: [ball]}\n");
+  // Aggregates come and go before, at and after the frame of the kill, and the resumed run must know their
+  // sprites and ids though it draws none of the frames that made them.
+  write("passing.yaml", kPassing);
   const std::string options = "render passing.yaml --progress none --out ";
   ASSERT_EQ(run(options + "whole").exit_code, 0);
   run_and_signal(options + "cut", "cut/frames/0006.png", "KILL");

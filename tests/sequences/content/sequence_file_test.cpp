@@ -69,8 +69,8 @@ TEST(LoadSequence, EveryKeyArrives) {
   EXPECT_EQ(s.layers.layers[1].preferences.resolution_scale, 0.5);
   EXPECT_EQ(s.regulator.policy, regulator::Policy::Hold);
   EXPECT_EQ(s.regulator.hold_frames, 5);
-  EXPECT_EQ(s.regulator.geometric_px, 2);
-  EXPECT_EQ(s.regulator.magnification, 0);
+  EXPECT_EQ(s.regulator.thresholds.geometric_px, 2);
+  EXPECT_EQ(s.regulator.thresholds.magnification, 0);
   EXPECT_EQ(s.warp, "affi");
   EXPECT_EQ(s.bound, layers::BoundKind::Dop14);
   EXPECT_EQ(s.extents.expected_reuse_frames, 4);
@@ -89,14 +89,14 @@ TEST(LoadSequence, PoliciesThatLookAheadOrKeepABudgetAreNamedWithTheirNumbers) {
       "min_resolution: 0.5, predict: linear, cutoff_px: 0.5, lookahead_frames: 7}";
   const regulator::RegulatorOptions options = load(folder, lines).regulator;
   EXPECT_EQ(options.policy, regulator::Policy::Budget);
-  EXPECT_EQ(options.budget_polygons, 900);
-  EXPECT_EQ(options.budget_pixels, 0);
-  EXPECT_EQ(options.budget_chunks, 8);
-  EXPECT_EQ(options.budget_ms, 2.5);
-  EXPECT_EQ(options.min_resolution, 0.5);
-  EXPECT_EQ(options.predict, regulator::Prediction::Linear);
-  EXPECT_EQ(options.cutoff_px, 0.5);
-  EXPECT_EQ(options.lookahead_frames, 7);
+  EXPECT_EQ(options.budget.polygons, 900);
+  EXPECT_EQ(options.budget.pixels, 0);
+  EXPECT_EQ(options.budget.chunks, 8);
+  EXPECT_EQ(options.budget.ms, 2.5);
+  EXPECT_EQ(options.budget.min_resolution, 0.5);
+  EXPECT_EQ(options.lookahead.predict, regulator::Prediction::Linear);
+  EXPECT_EQ(options.budget.cutoff_px, 0.5);
+  EXPECT_EQ(options.lookahead.frames, 7);
 }
 
 TEST(LoadSequence, LightAndFacesAreRegulatedAsTheFileSays) {
@@ -104,10 +104,10 @@ TEST(LoadSequence, LightAndFacesAreRegulatedAsTheFileSays) {
   std::vector<std::string> lines = kLines;
   lines[17] = "regulator: {photometric: 0.2, light_angle_deg: 90, color_warp: false, turned_px: 12}";
   const regulator::RegulatorOptions options = load(folder, lines).regulator;
-  EXPECT_EQ(options.photometric, 0.2);
-  EXPECT_DOUBLE_EQ(options.light_angle_rad, std::acos(0.0));
+  EXPECT_EQ(options.thresholds.photometric, 0.2);
+  EXPECT_DOUBLE_EQ(options.thresholds.light_angle_rad, std::acos(0.0));
   EXPECT_FALSE(options.color_warp);
-  EXPECT_EQ(options.turned_px, 12);
+  EXPECT_EQ(options.thresholds.turned_px, 12);
   lines[17] = "regulator: {light_angle_deg: 181}";
   EXPECT_THAT(message_of([&] { load(folder, lines); }), HasSubstr(":18: regulator.light_angle_deg is '181'"));
 }
@@ -181,7 +181,7 @@ TEST(LoadSequence, WhatIsWrongIsRefusedWithItsLine) {
        "resolution_scale is '5', rule: a number above 0, at most 4"},
       {18, "regulator: {policy: best}",
        "regulator.policy is 'best', rule: one of direct, reference, hold, interpolate, threshold"},
-      {18, "regulator: {magnification: 0.5}", "regulator.magnification is '0.5', rule: a number from 1"},
+      {18, "regulator: {magnification: 0.5}", "regulator.thresholds.magnification is '0.5', rule: a number from 1"},
       {19, "warp: bent", "warp is 'bent'"},
       {20, "bound: sphere", "bound is 'sphere', rule: one of box8, dop14, dop26"},
       {22, "clip_margin: 2", "clip_margin is '2', rule: a number from 0 to 1"},

@@ -61,13 +61,13 @@ std::map<double, SettingResult> by_knob(const std::string& series) {
 
 TEST(RegulatorSettings, AreValidDistinctAndBeginWithTheReference) {
   regulator::RegulatorOptions base;
-  base.budget_pixels = 5;  // of a sequence whose own policy is budget; must not limit the others
+  base.budget.pixels = 5;  // of a sequence whose own policy is budget; must not limit the others
   const std::vector<RegulatorSetting> settings = regulator_settings(base, 1000);
   EXPECT_EQ(settings.front().options.policy, Policy::Reference);
   std::set<std::string> names;
   for (const RegulatorSetting& setting : settings) {
     EXPECT_EQ(regulator::first_defect(setting.options), "");
-    EXPECT_EQ(setting.options.budget_pixels, regulator::kNoLimit);
+    EXPECT_EQ(setting.options.budget.pixels, regulator::kNoLimit);
     names.insert(setting.series + " " + setting.knob());
   }
   EXPECT_EQ(names.size(), settings.size());
@@ -77,10 +77,10 @@ TEST(RegulatorSettings, AreValidDistinctAndBeginWithTheReference) {
 TEST(RegulatorSettings, BudgetsAreSharesOfTheReference) {
   for (const RegulatorSetting& setting : regulator_settings({}, 1000)) {
     if (setting.options.policy != Policy::Budget) {
-      EXPECT_EQ(setting.options.budget_polygons, regulator::kNoLimit);
+      EXPECT_EQ(setting.options.budget.polygons, regulator::kNoLimit);
       continue;
     }
-    EXPECT_EQ(setting.options.budget_polygons, std::llround(10 * setting.value));
+    EXPECT_EQ(setting.options.budget.polygons, std::llround(10 * setting.value));
   }
 }
 
@@ -217,7 +217,7 @@ TEST(ReferencePolygonsPerFrame, AreThoseOfTheLayersInView) {
 
 TEST(LookaheadCurve, LiesBetweenThresholdAndOracle) {
   Settings settings = settings_for(moving());
-  settings.regulator.geometric_px = 1;
+  settings.regulator.thresholds.geometric_px = 1;
   const LookaheadCurve curve = lookahead_curve(moving(), settings, {0, kFrames - 1, 1});
   const std::size_t lookaheads = compared_lookaheads().size();
   ASSERT_EQ(curve.points.size(), 2 * lookaheads) << "known and predicted";

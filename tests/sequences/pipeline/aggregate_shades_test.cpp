@@ -64,7 +64,7 @@ Sequence sequence_of(const std::string& text) {
 Settings settings_of(const Sequence& sequence, Policy policy, double geometric_px = 1) {
   Settings settings = resolve({}, sequence, true).settings;
   settings.regulator.policy = policy;
-  settings.regulator.geometric_px = geometric_px;
+  settings.regulator.thresholds.geometric_px = geometric_px;
   settings.placement.min_rotation_gain = 1;
   return settings;
 }

@@ -10,7 +10,7 @@
 #include "sequences/commands/inspect_order.h"
 #include "sequences/commands/options.h"
 #include "sequences/content/layer_pairs.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/sequences/playback.h"
 #include "tests/sequences/temporary_folder.h"
 
@@ -56,8 +56,8 @@ Sequence crossing(const std::string& more = "") {
 Settings settings_of(const Sequence& sequence, Policy policy = Policy::Threshold) {
   Settings settings = resolve({}, sequence, true).settings;
   settings.regulator.policy = policy;
-  settings.regulator.budget_pixels = 20'000;
-  settings.regulator.lookahead_frames = 3;
+  settings.regulator.budget.pixels = 20'000;
+  settings.regulator.lookahead.frames = 3;
   return settings;
 }
 
@@ -131,7 +131,7 @@ TEST(Aggregates, StateThatIsCarriedOnFollowsTheSettingsOfItsNewPipeline) {
   ASSERT_EQ(before.size(), 4u);
   ASSERT_FALSE(before.bound(kBoth).follows_faces);
   Settings changed = settings_of(s, Policy::Reference);
-  changed.regulator.turned_px = 1;
+  changed.regulator.thresholds.turned_px = 1;
   const Pipeline pipeline = make_pipeline(*s.scene, s.layers, changed);
   const FrameReport report = step(pipeline, run.state, first + 1, nullptr);
   ASSERT_EQ(report.order.merged_into[kWall], kBoth);

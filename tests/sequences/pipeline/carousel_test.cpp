@@ -263,7 +263,7 @@ TEST(Carousel, ThresholdShowsTheOrderOfTheReferenceWithinItsBound) {
     ASSERT_EQ(a.order.back_to_front, b.order.back_to_front) << frame;
     ASSERT_EQ(a.shown.size(), b.shown.size());
     for (const regulator::LayerDecision& d : b.plan.decisions) {
-      EXPECT_LE(d.shown_geometric_px, thrifty.settings.regulator.geometric_px);
+      EXPECT_LE(d.shown_geometric_px, thrifty.settings.regulator.thresholds.geometric_px);
       renders += d.action == regulator::Action::Rerender;
     }
     for (const regulator::LayerDecision& d : a.plan.decisions)

@@ -14,6 +14,7 @@
 #include "sequences/pipeline/resolved_cycles.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {

@@ -26,9 +26,9 @@ std::vector<RegulatorOptions> bounded_policies() {
   std::vector<RegulatorOptions> all(4);
   all[0].policy = Policy::Threshold;
   all[1].policy = all[2].policy = Policy::Lookahead;
-  all[2].predict = Prediction::Linear;
+  all[2].lookahead.predict = Prediction::Linear;
   all[3].policy = Policy::Oracle;
-  for (RegulatorOptions& options : all) options.geometric_px = kBound_px;
+  for (RegulatorOptions& options : all) options.thresholds.geometric_px = kBound_px;
   return all;
 }
 
@@ -68,13 +68,13 @@ void expect_sound(const layers::TransformTrack& track) {
   }
   RegulatorOptions budget;
   budget.policy = Policy::Budget;
-  budget.budget_pixels = 1500;
+  budget.budget.pixels = 1500;
   for (const FrameReport& report : cube_on(track, budget).run(48, false)) {
     const regulator::LayerDecision& d = report.plan.decisions[0];
     if (report.assessments[0].has_sprite) {
       EXPECT_LE(d.cost.pixels, 1500) << report.frame;
     }
-    EXPECT_GE(d.resolution, budget.min_resolution);
+    EXPECT_GE(d.resolution, budget.budget.min_resolution);
     EXPECT_LE(d.resolution, 1);
   }
 }
@@ -147,7 +147,7 @@ TEST(HardMotion, FrameThatIsRepeatedIsReusedUnchanged) {
 
 TEST(HardMotion, StepsMayRunBackwardsWithoutLosingTheBoundOrGrowing) {
   RegulatorOptions options;
-  options.geometric_px = kBound_px;
+  options.thresholds.geometric_px = kBound_px;
   const SmallRun small = fleet(5, 4, options);
   const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
   PipelineState state(pipeline);
@@ -169,7 +169,7 @@ TEST(HardMotion, ReversedMotionNeedsAsManyRendersOfTheOracle) {
   // differ.
   RegulatorOptions oracle;
   oracle.policy = Policy::Oracle;
-  oracle.geometric_px = 1;
+  oracle.thresholds.geometric_px = 1;
   SmallRun forward = fleet(5, 4, oracle), backward = forward;
   backward.scene = tests::reversed_fleet_scene(5, 4);
   const int there = count(forward.run(129, false), Action::Rerender);
@@ -182,7 +182,7 @@ TEST(HardMotion, OptionsMayChangeOnTheWay) {
   std::vector<RegulatorOptions> options = bounded_policies();
   RegulatorOptions budget;
   budget.policy = Policy::Budget;
-  budget.budget_pixels = 150;
+  budget.budget.pixels = 150;
   options.insert(options.begin(), budget);
   SmallRun small = fleet(5, 4, budget);
   small.settings.frames = 60;
@@ -205,7 +205,7 @@ TEST(HardMotion, OptionsMayChangeOnTheWay) {
 
 TEST(HardMotion, OptionsThatChangeAndComeBackDoNotChangeTheFrame) {
   RegulatorOptions options;
-  options.geometric_px = 1;
+  options.thresholds.geometric_px = 1;
   SmallRun small = fleet(5, 4, options);
   const auto plain = small.run(24, false);
   PipelineState state(make_pipeline(small.scene, small.layers, small.settings));
@@ -227,7 +227,7 @@ TEST(HardMotion, TenThousandFramesOfALoopNeitherDriftNorGrow) {
   constexpr int kPeriod = 32, kLong = 10'000, kMostPeriods = 24;
   SmallRun small(tests::fleet_scene(3, 6, 1.0));
   small.settings.fps = kPeriod;
-  small.settings.regulator.geometric_px = kBound_px;
+  small.settings.regulator.thresholds.geometric_px = kBound_px;
   const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
   PipelineState state(pipeline);
   struct Line {

@@ -33,7 +33,7 @@ TEST(AssessSprite, EmptySpriteIsNeverGoodEnoughForWhatIsInViewNow) {
   const layers::LayerState& then = captured_states(pipeline, state, 3)[kCube];
   const layers::LayerState& now = captured_states(pipeline, state, 4)[kCube];
   regulator::RegulatorOptions lenient;
-  lenient.geometric_px = 1e6;
+  lenient.thresholds.geometric_px = 1e6;
   const auto violation = [&](const layers::SpritePlacement& placement, const layers::LayerState& shown) {
     return regulator::violation_of(assess_sprite(pipeline, state.layers, then, placement, shown, 1), lenient);
   };
@@ -82,12 +82,12 @@ TEST(PlacementAt, IsTheSameWhenAskedAgain) {
 
 TEST(ChooseDrawInstant, LiesInTheWindowAndTheOracleIsNeverShorter) {
   Planning p;
-  p.settings.regulator.geometric_px = 1;
+  p.settings.regulator.thresholds.geometric_px = 1;
   for (int frame = 0; frame < 40; frame += 3) {
     int before = 0;
     for (const int lookahead : {0, 2, 8, 32}) {
       p.settings.regulator.policy = regulator::Policy::Lookahead;
-      p.settings.regulator.lookahead_frames = lookahead;
+      p.settings.regulator.lookahead.frames = lookahead;
       const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
       PipelineState state(pipeline);
       const regulator::FrameRun run = choose_draw_instant(pipeline, state, kCube, frame);

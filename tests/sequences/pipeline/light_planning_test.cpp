@@ -108,7 +108,7 @@ TEST(ColorWarp, WithoutItTheSameAccuracyCostsRenders) {
   EXPECT_LT(renders(without), kFrames);
   for (const FrameReport& report : without)
     EXPECT_EQ(report.plan.decisions[0].shown_color, dvec3(1, 1, 1)) << report.frame;
-  stage.settings.regulator.photometric = 0;
+  stage.settings.regulator.thresholds.photometric = 0;
   const auto blind = stage.run(Policy::Threshold);
   EXPECT_EQ(renders(blind), 1);
   EXPECT_GT(largest_difference(blind, truth), 80);
@@ -181,7 +181,7 @@ TEST(ColorWarp, DecisionsSayTheColourAndTheFiducial) {
 TEST(ColorWarp, DisplayedColourErrorNeverExceedsTheThreshold) {
   Dimming stage(0.2, 0.9);
   for (const double threshold : {0.01, 0.05, 0.2}) {
-    stage.settings.regulator.photometric = threshold;
+    stage.settings.regulator.thresholds.photometric = threshold;
     for (const Policy policy : {Policy::Threshold, Policy::Lookahead, Policy::Oracle})
       for (const FrameReport& report : stage.run(policy, false))
         if (report.plan.decisions[0].action == Action::Reuse) {
@@ -193,17 +193,17 @@ TEST(ColorWarp, DisplayedColourErrorNeverExceedsTheThreshold) {
 TEST(Resolve, OptionsOfLightAndFacesOverrideTheSequence) {
   Sequence sequence;
   sequence.frames = 1;
-  sequence.regulator.photometric = 0.3;
+  sequence.regulator.thresholds.photometric = 0.3;
   CommandLine line;
-  EXPECT_EQ(resolve(line, sequence, true).settings.regulator.photometric, 0.3);
+  EXPECT_EQ(resolve(line, sequence, true).settings.regulator.thresholds.photometric, 0.3);
   line.photometric = 0.1;
   line.light_angle_deg = 180;
   line.turned_px = 8;
   line.color_warp = "off";
   const regulator::RegulatorOptions options = resolve(line, sequence, true).settings.regulator;
-  EXPECT_EQ(options.photometric, 0.1);
-  EXPECT_DOUBLE_EQ(options.light_angle_rad, 2 * std::acos(0.0));
-  EXPECT_EQ(options.turned_px, 8);
+  EXPECT_EQ(options.thresholds.photometric, 0.1);
+  EXPECT_DOUBLE_EQ(options.thresholds.light_angle_rad, 2 * std::acos(0.0));
+  EXPECT_EQ(options.thresholds.turned_px, 8);
   EXPECT_FALSE(options.color_warp);
   line.color_warp = "maybe";
   EXPECT_THAT(tests::message_of([&] { resolve(line, sequence, true); }),
@@ -219,12 +219,12 @@ TEST(TurnedFaces, AreRegulatedOnRequest) {
   const layers::LayerSet layers = layers::factor(scene, tests::one_layer_per_part(scene));
   Settings settings;
   settings.view.display_px = {200, 150};
-  settings.regulator.geometric_px = 1e3;
-  settings.regulator.photometric = settings.regulator.magnification = settings.regulator.minification =
-      settings.regulator.anisotropy = 0;
-  settings.regulator.uncovered_px = -1;
+  regulator::Thresholds& thresholds = settings.regulator.thresholds;
+  thresholds.geometric_px = 1e3;
+  thresholds.photometric = thresholds.magnification = thresholds.minification = thresholds.anisotropy = 0;
+  thresholds.uncovered_px = -1;
   const auto renders_at = [&](double turned_px) {
-    settings.regulator.turned_px = turned_px;
+    settings.regulator.thresholds.turned_px = turned_px;
     const Pipeline pipeline = make_pipeline(scene, layers, settings);
     PipelineState state(pipeline);
     int n = 0;

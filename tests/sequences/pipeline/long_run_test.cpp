@@ -8,6 +8,7 @@
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/support/fleet.h"
 #include "tests/support/scenes.h"
 

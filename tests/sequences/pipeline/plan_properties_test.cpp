@@ -33,10 +33,10 @@ RegulatorOptions within(std::int64_t polygons, std::int64_t pixels, std::int64_t
                         double ms = regulator::kNoLimitMs) {
   RegulatorOptions options;
   options.policy = Policy::Budget;
-  options.budget_polygons = polygons;
-  options.budget_pixels = pixels;
-  options.budget_chunks = chunks;
-  options.budget_ms = ms;
+  options.budget.polygons = polygons;
+  options.budget.pixels = pixels;
+  options.budget.chunks = chunks;
+  options.budget.ms = ms;
   return options;
 }
 
@@ -44,9 +44,9 @@ RegulatorOptions bounded(Policy policy, double px, int lookahead = 8,
                          regulator::Prediction predict = regulator::Prediction::Known) {
   RegulatorOptions options;
   options.policy = policy;
-  options.geometric_px = px;
-  options.lookahead_frames = lookahead;
-  options.predict = predict;
+  options.thresholds.geometric_px = px;
+  options.lookahead.frames = lookahead;
+  options.lookahead.predict = predict;
   return options;
 }
 

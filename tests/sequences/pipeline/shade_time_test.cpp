@@ -250,7 +250,7 @@ Displacement displacement(const Room& room, double geometric_px, int frames) {
   const layers::LayerSet set = room.layers();
   Settings settings;
   settings.view.display_px = {160, 120};
-  settings.regulator.geometric_px = geometric_px;
+  settings.regulator.thresholds.geometric_px = geometric_px;
   settings.frames = frames;
   const Pipeline pipeline = make_pipeline(room.scene, set, settings);
   PipelineState state(pipeline);

@@ -7,7 +7,7 @@
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/motion_blur.h"
 #include "sequences/pipeline/step.h"
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::sequences {
@@ -25,7 +25,7 @@ struct Film {
 
   explicit Film(Policy policy, double geometric_px = 4) {
     settings.regulator.policy = policy;
-    settings.regulator.geometric_px = geometric_px;
+    settings.regulator.thresholds.geometric_px = geometric_px;
     settings.view.display_px = {200, 150};
     settings.frames = kFrames;
   }

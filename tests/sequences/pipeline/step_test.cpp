@@ -58,7 +58,7 @@ std::vector<SmallRun> fiducial_policies() {
   std::vector<SmallRun> runs;
   for (const Policy policy : {Policy::Threshold, Policy::Budget, Policy::Lookahead, Policy::Oracle}) {
     runs.push_back(SmallRun(tests::moving_scene()).policy(policy, 2).lookahead(6));
-    runs.back().settings.regulator.budget_pixels = 12'000;
+    runs.back().settings.regulator.budget.pixels = 12'000;
     runs.back().settings.frames = kFrames;
   }
   return runs;
@@ -220,7 +220,7 @@ TEST(StepLookahead, MinimumRateIsKeptWhereADrawingWouldChangeAnything) {
 TEST(StepBudget, NoFrameSpendsMoreThanItsBudgetExceptOnFirstAppearances) {
   for (const std::int64_t pixels : {0, 3000, 12'000}) {
     SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Budget);
-    small.settings.regulator.budget_pixels = pixels;
+    small.settings.regulator.budget.pixels = pixels;
     int deferred = 0, within = 0;
     for (const FrameReport& report : small.run(40, false)) {
       std::int64_t spent = 0, on_first_appearances = 0;
@@ -239,7 +239,7 @@ TEST(StepBudget, NoFrameSpendsMoreThanItsBudgetExceptOnFirstAppearances) {
 
 TEST(StepBudget, UnlimitedBudgetWithoutCutOffLeavesNoError) {
   SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Budget);
-  small.settings.regulator.cutoff_px = 0;
+  small.settings.regulator.budget.cutoff_px = 0;
   for (const FrameReport& report : small.run(kFrames, false))
     for (const regulator::LayerDecision& d : report.plan.decisions) EXPECT_LT(d.shown_geometric_px, 1e-9);
 }
@@ -248,7 +248,7 @@ TEST(StepBudget, MoreBudgetMeansLessError) {
   double before = HUGE_VAL;
   for (const std::int64_t pixels : {0, 3000, 60'000}) {
     SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Budget);
-    small.settings.regulator.budget_pixels = pixels;
+    small.settings.regulator.budget.pixels = pixels;
     double sum = 0;
     for (const FrameReport& report : small.run(40, false))
       for (const regulator::LayerDecision& d : report.plan.decisions) sum += d.shown_geometric_px;

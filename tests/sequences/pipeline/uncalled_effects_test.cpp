@@ -11,6 +11,7 @@
 
 #include "sequences/pipeline/step.h"
 #include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
 #include "tests/support/sequences.h"
 
 namespace talisman::sequences {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
+#include "sequences/results/timing.h"
 
 #include <cmath>
 
@@ -15,11 +16,10 @@ FrameLine drawn_line(int frame) {
   line.frame = frame;
   line.frame_hash = "0123456789abcdef";
   line.renders = 2;
-  line.polygons_rendered = 100;
-  line.polygons_reference = 400;
-  line.pixels_filled = 1'234'567'890'123;
-  line.plan_ms = 0.25;
-  line.io_ms = 1.5;
+  line.polygons = {100, 400};
+  line.pixels.filled = 1'234'567'890'123;
+  line.times.plan_ms = 0.25;
+  line.times.io_ms = 1.5;
   return line;
 }
 
@@ -31,7 +31,7 @@ TEST(FrameLine, RoundTripsThroughJsonWithQuality) {
   const std::optional<FrameLine> back = frame_line_from_json(json_of(line));
   ASSERT_TRUE(back);
   EXPECT_EQ(json_of(*back), json_of(line));
-  EXPECT_EQ(back->pixels_filled, 1'234'567'890'123);
+  EXPECT_EQ(back->pixels.filled, 1'234'567'890'123);
   EXPECT_TRUE(std::isinf(back->quality->reuse.psnr_db));
 }
 
@@ -67,9 +67,57 @@ TEST(FrameLine, PlannedFramesHaveNullForWhatWasNotMeasured) {
   line.frame_hash.clear();
   const nlohmann::json json = nlohmann::json::parse(json_of(line));
   EXPECT_TRUE(json["pixels_filled"].is_null());
-  EXPECT_TRUE(json["render_ms"].is_null());
-  EXPECT_FALSE(json["plan_ms"].is_null());
+  EXPECT_TRUE(json["modelled_ms"].is_null());
   EXPECT_FALSE(json["polygons_rendered"].is_null());
+}
+
+TEST(FrameLine, HasTheEntriesOfTheFirstRelease) {
+  FrameLine line = drawn_line(3);
+  line.visibility.emplace();
+  line.budget_gap = regulator::BudgetGap{1.5, 2, true};
+  EXPECT_EQ(json_of(line),
+            R"({"schema":"talisman.frame/1","frame":3,"frame_hash":"0123456789abcdef","layers_in_view":0,)"
+            R"("renders":2,"reuses":0,"layers_assessed":0,"shadow_maps_drawn":0,"shadow_maps_reused":0,)"
+            R"("reflections_drawn":0,"polygons_rendered":100,"polygons_reference":400,"pixels_rendered":0,)"
+            R"("pixels_reference":0,"pixels_filled":1234567890123,"pixels_composited":0,"chunks_rendered":0,)"
+            R"("chunks_clear":0,"fragments":0,"texture_samples":0,"sprite_bytes":0,"modelled_ms":0.0,)"
+            R"("visibility":{"layers":0,"queries":0,"pairs":0,"exact_tests":0,"edges":0,"swaps":0,)"
+            R"("components":0,"merged_components":0,"merged_layers":0,"resolved_components":0,)"
+            R"("resolved_layers":0,"expression_registers":0,"expression_reads":0,"merged_parts":0},)"
+            R"("budget_gap":{"greedy_px":1.5,"optimal_px":2.0,"gap":0.25,"exact":true}})");
+}
+
+// What a clock says would make two runs of the same thing differ.
+TEST(FrameLine, TimesAreInTheLinesOfTheirOwnFile) {
+  FrameLine line = drawn_line(7);
+  FrameLine slower = line;
+  slower.times = {1, 2, 3, 4, 5, 6};
+  EXPECT_EQ(json_of(slower), json_of(line));
+  EXPECT_NE(timing_json(slower), timing_json(line));
+  const std::optional<FrameTiming> back = timing_from_json(timing_json(slower));
+  ASSERT_TRUE(back);
+  EXPECT_EQ(back->frame, 7);
+  EXPECT_EQ(back->times.plan_ms, 1);
+  EXPECT_EQ(back->times.io_ms, 4);
+}
+
+TEST(Timing, LinesOfFramesThatWereOnlyPlannedHaveNullForTheRest) {
+  FrameLine line = drawn_line(7);
+  line.frame_hash.clear();
+  EXPECT_EQ(timing_json(line), R"({"schema":"talisman.timing/1","frame":7,"plan_ms":0.25,"sort_ms":null,)"
+                               R"("render_ms":null,"compress_ms":null,"composite_ms":null,"io_ms":null})");
+}
+
+TEST(Timing, LinesOfOtherKindsAreToldApart) {
+  EXPECT_TRUE(is_process_line(process_json()));
+  EXPECT_FALSE(timing_from_json(process_json()));
+  EXPECT_FALSE(is_process_line(timing_json(drawn_line(1))));
+  const std::string whole = timing_json(drawn_line(7));
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_FALSE(timing_from_json(whole.substr(0, length)) || is_process_line(whole.substr(0, length)));
+  const nlohmann::json process = nlohmann::json::parse(process_json());
+  EXPECT_GE(process["threads"], 1);
+  EXPECT_FALSE(process["version"].get<std::string>().empty());
 }
 
 Summary two_layer_summary() {
@@ -93,12 +141,13 @@ TEST(Summary, JsonHoldsEveryPromisedField) {
   for (const char* field :
        {"sequence", "policy", "warp", "frames", "display_px", "layers", "mean_update_rate",
         "cost_weighted_update_rate", "polygons_rendered", "polygons_reference", "pixels_rendered",
-        "pixels_composited", "chunks_rendered", "chunks_clear", "effects", "modelled_ms", "wall_ms"})
+        "pixels_composited", "chunks_rendered", "chunks_clear", "effects", "modelled_ms"})
     EXPECT_TRUE(json.contains(field)) << field;
   for (const char* field : {"name", "parts", "polygons", "renders", "update_rate", "mean_geometric_px",
                             "max_geometric_px", "sprite_px"})
     EXPECT_TRUE(json["layers"][0].contains(field)) << field;
   EXPECT_FALSE(json.contains("quality")) << "quality only when asked for";
+  EXPECT_FALSE(json.contains("wall_ms")) << "times are in timing.jsonl alone";
   EXPECT_EQ(json["polygons_rendered"], 1000);
 }
 

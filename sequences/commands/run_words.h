@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The words of `render` and `plan`, told once: to the command line, and to whoever else takes them (python/).
+
+#include <string>
+#include <vector>
+
+#include "sequences/commands/options.h"
+
+namespace CLI {
+class App;
+}
+
+namespace talisman::sequences {
+
+/// The sequence and the options of `plan`, which `render` has too. `line` must live as long as `command`.
+void add_run_options(CLI::App& command, CommandLine& line);
+/// The further options of `render`.
+void add_picture_options(CLI::App& command, CommandLine& line);
+
+/// What `talisman plan SEQUENCE WORDS…` (or render) would be told. Throws InputError for a word that is unknown
+/// or has not the value that it needs; what the values may be is checked by `resolve`.
+CommandLine command_line_from(const std::string& sequence, std::vector<std::string> words, bool plan_only);
+
+}  // namespace talisman::sequences

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The column tables of all result files, and the rows that they are got from.
+///
+///   decisions   a line of decisions.jsonl, a row of decisions.csv      decision_columns.cpp
+///   frames      a line of frames.jsonl, a row of frames.csv            frame_columns.cpp
+///   layers      an entry of `layers` in summary.json, layers.csv       run_columns.cpp
+///   effects     an entry of `effects` in summary.json, effects.csv     run_columns.cpp
+///   run         summary.json, the one row of run.csv                   run_columns.cpp
+///   timing      a line of timing.jsonl, a row of timing.csv            timing_columns.cpp
+
+#include "sequences/results/columns.h"
+#include "sequences/results/frame_lines.h"
+#include "sequences/results/summary.h"
+
+namespace talisman::sequences {
+
+struct DecisionRow {
+  const FrameReport& report;
+  const regulator::LayerDecision& decision;
+};
+
+struct LayerRow {
+  const LayerSummary& layer;
+  int frames = 0;  ///< of the run
+};
+
+struct EffectRow {
+  const layers::EffectCall& effect;
+  int passes = 0;
+};
+
+/// Totals over the frames in which the layers were sorted.
+struct VisibilityTotals {
+  std::int64_t frames = 0, cyclic_frames = 0;
+  std::int64_t queries = 0, pairs = 0, exact_tests = 0, swaps = 0, merged_layers = 0, merged_parts = 0;
+};
+
+/// Means over the frames; PSNR is that of the mean squared error, so that identical frames do not make it
+/// infinite.
+struct MeanQuality {
+  double mse = 0, ssim = 0, flip = 0;
+  double psnr_db() const { return mse > 0 ? 10 * std::log10(255.0 * 255.0 / mse) : INFINITY; }
+};
+
+/// A run with what is added up over its frames once. Keeps a reference.
+struct RunRow {
+  explicit RunRow(const Summary& summary);
+  const Summary& summary;
+  VisibilityTotals visibility;
+  ResolvedCounters resolved;
+  GapSummary gap;
+  std::optional<CompressionReport> compression;  ///< of a run that drew compressed sprites
+  std::optional<MeanQuality> quality, quality_of_reuse, quality_of_resampling;
+};
+
+const ColumnTable<DecisionRow>& decision_table();
+const ColumnTable<FrameLine>& frame_table();
+const ColumnTable<LayerRow>& layer_table();
+const ColumnTable<EffectRow>& effect_table();
+const ColumnTable<RunRow>& run_table();
+const ColumnTable<FrameLine>& timing_table();
+
+}  // namespace talisman::sequences

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/results/column_tables.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using Row = DecisionRow;
+using Columns = std::vector<Column<Row>>;
+
+const regulator::LayerAssessment& assessment(const Row& row) {
+  return row.report.assessments[row.decision.layer];
+}
+const fiducials::Report& fiducials_of(const Row& row) { return assessment(row).fiducials; }
+
+/// `value` of the photometric fiducial where it was computed; else there is only the reason.
+template <typename T>
+Value photometric(const Row& row, T fiducials::Photometric::*value) {
+  const fiducials::Photometric& p = fiducials_of(row).photometric;
+  return p.computed ? value_of(p.*value) : Value(Absent{});
+}
+
+template <int axis>
+Value multiplier(const Row& row) {
+  const fiducials::Photometric& p = fiducials_of(row).photometric;
+  return p.computed ? value_of(p.multiplier[axis]) : Value(Absent{});
+}
+
+template <int axis>
+Value photometric_place(const Row& row) {
+  const fiducials::Photometric& p = fiducials_of(row).photometric;
+  return p.computed ? value_of(p.where_px[axis]) : Value(Absent{});
+}
+
+Value light(const Row& row, fiducials::LightRef fiducials::Photometric::*which) {
+  const fiducials::Photometric& p = fiducials_of(row).photometric;
+  if (!p.computed) return Absent{};
+  const fiducials::LightRef& light = p.*which;
+  if (light.index == fiducials::LightRef::kEye) return value_of("eye (highlights)");
+  return light.index >= 0 ? value_of(std::string_view(light.name)) : Value(Null{});
+}
+
+/// The entry of the warp's matrix; the last row is there for perspective warps alone.
+template <int row_of_matrix, int column>
+Value entry_of_warp(const Row& row) {
+  const warp::Warp& w = row.decision.shown_warp;
+  if (row_of_matrix == 2 && w.is_affine()) return Absent{};
+  return value_of(w.now_from_then[column][row_of_matrix]);
+}
+
+/// A fiducial that may be left out: null where it was not computed.
+template <typename Part, typename T>
+Value if_computed(const Part& part, T value) {
+  return part.computed ? value_of(value) : Value(Null{});
+}
+
+Columns what_was_done() {
+  return {computed<Row>("frame", "frame", "", "number of the frame, from 0",
+                        [](const Row& r) { return r.report.frame; }),
+          computed<Row>("layer", "layer", "", "name of the layer, or of the aggregate that draws several",
+                        [](const Row& r) { return r.report.layers[r.decision.layer].name; }),
+          computed<Row>("decision", "decision", "",
+                        "reuse (warp the old sprite), rerender, or drop (out of view)",
+                        [](const Row& r) { return regulator::name(r.decision.action); }),
+          computed<Row>("reason", "reason", "", "why, with the numbers that decided",
+                        [](const Row& r) { return r.decision.reason; })};
+}
+
+Columns warp_columns() {
+  const char* place = "the map of sprite positions when drawn to display positions now, row by row";
+  return {
+      computed<Row>("warp_xx", "warp/0", "", place, [](const Row& r) { return entry_of_warp<0, 0>(r); }),
+      computed<Row>("warp_xy", "warp/1", "", "likewise", [](const Row& r) { return entry_of_warp<0, 1>(r); }),
+      computed<Row>("warp_x", "warp/2", "px", "likewise",
+                    [](const Row& r) { return entry_of_warp<0, 2>(r); }),
+      computed<Row>("warp_yx", "warp/3", "", "likewise", [](const Row& r) { return entry_of_warp<1, 0>(r); }),
+      computed<Row>("warp_yy", "warp/4", "", "likewise", [](const Row& r) { return entry_of_warp<1, 1>(r); }),
+      computed<Row>("warp_y", "warp/5", "px", "likewise",
+                    [](const Row& r) { return entry_of_warp<1, 2>(r); }),
+      computed<Row>("warp_wx", "warp/6", "1/px", "third row; only of perspective warps",
+                    [](const Row& r) { return entry_of_warp<2, 0>(r); }),
+      computed<Row>("warp_wy", "warp/7", "1/px", "likewise",
+                    [](const Row& r) { return entry_of_warp<2, 1>(r); }),
+      computed<Row>("warp_w", "warp/8", "", "likewise", [](const Row& r) { return entry_of_warp<2, 2>(r); })};
+}
+
+Columns what_is_shown() {
+  return {
+      computed<Row>("geometric_px", "geometric_px", "px",
+                    "error of what is displayed: largest distance of a characteristic point from where it "
+                    "belongs; 0 for a fresh sprite",
+                    [](const Row& r) { return r.decision.shown_geometric_px; }),
+      computed<Row>("color_r", "color/0", "",
+                    "multiplier of the sprite's colour, 0 to 1; 1 for a fresh sprite",
+                    [](const Row& r) { return r.decision.shown_color.x; }),
+      computed<Row>("color_g", "color/1", "", "likewise",
+                    [](const Row& r) { return r.decision.shown_color.y; }),
+      computed<Row>("color_b", "color/2", "", "likewise",
+                    [](const Row& r) { return r.decision.shown_color.z; }),
+      computed<Row>("resolution", "resolution", "",
+                    "of the sprite shown, relative to what the layer's author asks for",
+                    [](const Row& r) { return r.decision.resolution; }),
+      computed<Row>("depicts_frame", "depicts_frame", "",
+                    "the frame as of which the sprite was drawn; null: nothing is shown", [](const Row& r) {
+                      const int frame = r.decision.depicts_frame;
+                      return frame >= 0 ? value_of(frame) : Value(Null{});
+                    })};
+}
+
+Columns geometric_columns() {
+  return {computed<Row>("warp_geometric_px", "fiducials/warp_geometric_px", "px",
+                        "error that the old sprite would have with the warp, also when that was rejected",
+                        [](const Row& r) { return fiducials_of(r).geometric.px; }),
+          computed<Row>("held_geometric_px", "fiducials/held_geometric_px", "px",
+                        "error that the old sprite would have where it was, without a warp",
+                        [](const Row& r) { return assessment(r).held_geometric_px; }),
+          computed<Row>("worst_at_x_px", "fiducials/worst_at_px/0", "px",
+                        "where on the display the geometric error is largest",
+                        [](const Row& r) { return fiducials_of(r).geometric.where_px.x; }),
+          computed<Row>("worst_at_y_px", "fiducials/worst_at_px/1", "px", "likewise",
+                        [](const Row& r) { return fiducials_of(r).geometric.where_px.y; }),
+          computed<Row>("magnification", "fiducials/magnification", "",
+                        "most by which the warp stretches a texel; 1 at rest",
+                        [](const Row& r) { return fiducials_of(r).sampling.magnification; }),
+          computed<Row>("minification", "fiducials/minification", "",
+                        "least by which it stretches one; below 1 texels are squeezed",
+                        [](const Row& r) { return fiducials_of(r).sampling.minification; }),
+          computed<Row>("anisotropy", "fiducials/anisotropy", "", "largest ratio of the two at one place",
+                        [](const Row& r) { return fiducials_of(r).sampling.anisotropy; }),
+          computed<Row>("uncovered_px", "fiducials/uncovered_px", "px",
+                        "depth to which a side cut off by the display has come into view; null: not computed",
+                        [](const Row& r) {
+                          const auto& v = fiducials_of(r).visibility;
+                          return if_computed(v, v.uncovered_px);
+                        }),
+          computed<Row>("uncovered_why_not", "fiducials/uncovered_why_not", "",
+                        "why that was not computed; empty if it was",
+                        [](const Row& r) { return std::string_view(fiducials_of(r).visibility.why_not); })};
+}
+
+Columns photometric_columns() {
+  using P = fiducials::Photometric;
+  return {
+      computed<Row>("photometric_why_not", "fiducials/photometric/why_not", "",
+                    "why the photometric fiducial was not computed; absent if it was",
+                    [](const Row& r) {
+                      const P& p = fiducials_of(r).photometric;
+                      return p.computed ? Value(Absent{}) : value_of(std::string_view(p.why_not));
+                    }),
+      computed<Row>("photometric_color", "fiducials/photometric/color", "",
+                    "largest error of the shading after the colour warp, linear light, 1 is white",
+                    [](const Row& r) { return photometric(r, &P::color); }),
+      computed<Row>("photometric_multiplier_r", "fiducials/photometric/multiplier/0", "",
+                    "the colour warp that fits best", [](const Row& r) { return multiplier<0>(r); }),
+      computed<Row>("photometric_multiplier_g", "fiducials/photometric/multiplier/1", "", "likewise",
+                    [](const Row& r) { return multiplier<1>(r); }),
+      computed<Row>("photometric_multiplier_b", "fiducials/photometric/multiplier/2", "", "likewise",
+                    [](const Row& r) { return multiplier<2>(r); }),
+      computed<Row>("photometric_worst_at_x_px", "fiducials/photometric/worst_at_px/0", "px",
+                    "where on the display the shading is most wrong",
+                    [](const Row& r) { return photometric_place<0>(r); }),
+      computed<Row>("photometric_worst_at_y_px", "fiducials/photometric/worst_at_px/1", "px", "likewise",
+                    [](const Row& r) { return photometric_place<1>(r); }),
+      computed<Row>("photometric_light", "fiducials/photometric/light", "",
+                    "the light that changed most at that place; null: none",
+                    [](const Row& r) { return light(r, &P::color_light); }),
+      computed<Row>("light_angle_rad", "fiducials/photometric/light_angle_rad", "rad",
+                    "largest angle by which a light, or for highlights the eye, has moved about the layer",
+                    [](const Row& r) { return photometric(r, &P::light_angle_rad); }),
+      computed<Row>("light_angle_light", "fiducials/photometric/angle_light", "", "that light; null: none",
+                    [](const Row& r) { return light(r, &P::angle_light); }),
+      computed<Row>("light_distance", "fiducials/photometric/light_distance", "",
+                    "largest change of a light's distance, relative to the larger one, 0 to 1",
+                    [](const Row& r) { return photometric(r, &P::light_distance); })};
+}
+
+Columns remaining_fiducials() {
+  return {
+      computed<Row>(
+          "turned_px", "fiducials/turned_px", "px",
+          "square root of the largest area of a side that has turned to the eye; null: not computed",
+          [](const Row& r) {
+            const auto& t = fiducials_of(r).turned;
+            return if_computed(t, t.px);
+          }),
+      computed<Row>("turned_faces", "fiducials/turned_faces", "faces",
+                    "how many sides have turned to the eye",
+                    [](const Row& r) { return fiducials_of(r).turned.count; }),
+      computed<Row>("shade_px", "fiducials/shade_px", "px",
+                    "how far shadows, highlights and mirrored pictures have run over the surface; null: not "
+                    "computed",
+                    [](const Row& r) {
+                      const auto& s = fiducials_of(r).shade;
+                      return if_computed(s, s.px);
+                    }),
+      computed<Row>("matched_points", "fiducials/matched_points", "points",
+                    "characteristic points that the warp was fitted to",
+                    [](const Row& r) { return assessment(r).matched_points; }),
+      computed<Row>("fit", "fiducials/fit", "", "status of the fit",
+                    [](const Row& r) { return warp::name(assessment(r).fitted.status); }),
+      computed<Row>("frames_since_render", "fiducials/frames_since_render", "frames", "age of the old sprite",
+                    [](const Row& r) { return assessment(r).frames_since_render; })};
+}
+
+Columns cost_columns() {
+  return {
+      computed<Row>("cost_polygons", "cost/polygons", "triangles", "sent to the renderer; 0 unless rendered",
+                    [](const Row& r) { return r.decision.cost.polygons; }),
+      computed<Row>("cost_pixels", "cost/pixels", "texels", "of the sprite's rectangle, likewise",
+                    [](const Row& r) { return r.decision.cost.pixels; }),
+      computed<Row>("cost_chunks", "cost/chunks", "32×32 chunks", "of the sprite's rectangle, likewise",
+                    [](const Row& r) { return r.decision.cost.chunks; }),
+      computed<Row>("cost_bytes", "cost/bytes", "bytes",
+                    "of the sprite, uncompressed, clear chunks included, likewise",
+                    [](const Row& r) { return r.decision.cost.bytes; })};
+}
+
+}  // namespace
+
+const ColumnTable<DecisionRow>& decision_table() {
+  static const ColumnTable<DecisionRow> table = [] {
+    ColumnTable<DecisionRow> t{"decisions", "talisman.decision/1", {}, {}};
+    for (const Columns& part : {what_was_done(), warp_columns(), what_is_shown(), geometric_columns(),
+                                photometric_columns(), remaining_fiducials(), cost_columns()})
+      t.columns.insert(t.columns.end(), part.begin(), part.end());
+    t.groups = {{"fiducials", "of layers in view that have an old sprite", true,
+                 [](const DecisionRow& r) { return assessment(r).has_sprite && assessment(r).in_view; }}};
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace talisman::sequences

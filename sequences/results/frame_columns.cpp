@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/results/column_tables.h"
+#include "sequences/results/shared_columns.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using Columns = std::vector<Column<FrameLine>>;
+
+/// A member that is known only of frames that were drawn; else null.
+template <typename Member>
+Column<FrameLine> measured(std::string name, std::string unit, std::string meaning, Member member) {
+  const std::string path = name;
+  Column<FrameLine> column =
+      stored<FrameLine>(std::move(name), path, std::move(unit), std::move(meaning), member);
+  column.get = [](const FrameLine& line) {
+    return line.is_drawn() ? value_of(Member{}(line)) : Value(Null{});
+  };
+  return column;
+}
+
+template <typename Member>
+Column<FrameLine> counted(std::string name, std::string unit, std::string meaning, Member member) {
+  const std::string path = name;
+  return stored<FrameLine>(std::move(name), path, std::move(unit), std::move(meaning), member);
+}
+
+Columns counters() {
+  return {counted(
+              "frame", "", "number of the frame, from 0", [](auto& l) -> auto& { return l.frame; }),
+          measured(
+              "frame_hash", "", "FNV-1a 64 of the linear picture, hexadecimal; null: not drawn",
+              [](auto& l) -> auto& { return l.frame_hash; }),
+          counted(
+              "layers_in_view", "layers", "that have a sprite in this frame",
+              [](auto& l) -> auto& { return l.layers_in_view; }),
+          counted(
+              "renders", "layers", "of them, drawn anew", [](auto& l) -> auto& { return l.renders; }),
+          counted(
+              "reuses", "layers", "of them, shown by their old sprite",
+              [](auto& l) -> auto& { return l.reuses; }),
+          counted(
+              "layers_assessed", "layers", "in view with an old sprite: fitted and judged",
+              [](auto& l) -> auto& { return l.layers_assessed; })};
+}
+
+Columns work() {
+  return {counted(
+              "shadow_maps_drawn", "maps", "as planned",
+              [](auto& l) -> auto& { return l.passes.shadow_maps_drawn; }),
+          counted(
+              "shadow_maps_reused", "maps", "looked up as they were, as planned",
+              [](auto& l) -> auto& { return l.passes.shadow_maps_reused; }),
+          counted(
+              "reflections_drawn", "pictures", "of what mirrors show, as planned",
+              [](auto& l) -> auto& { return l.passes.reflections_drawn; }),
+          counted(
+              "polygons_rendered", "triangles", "of the layers rendered, and of casters in shadow maps",
+              [](auto& l) -> auto& { return l.polygons.rendered; }),
+          counted(
+              "polygons_reference", "triangles", "of all layers in view: what `reference` would draw",
+              [](auto& l) -> auto& { return l.polygons.reference; }),
+          counted(
+              "pixels_rendered", "texels", "of the rectangles of the sprites rendered",
+              [](auto& l) -> auto& { return l.pixels.rendered; }),
+          counted(
+              "pixels_reference", "texels", "the same for all layers in view",
+              [](auto& l) -> auto& { return l.pixels.reference; })};
+}
+
+Columns drawing() {
+  return {measured(
+              "pixels_filled", "texels", "writes by the renderer",
+              [](auto& l) -> auto& { return l.pixels.filled; }),
+          measured(
+              "pixels_composited", "pixels", "reads of sprites by the compositor",
+              [](auto& l) -> auto& { return l.pixels.composited; }),
+          measured(
+              "chunks_rendered", "32×32 chunks", "in which something was drawn",
+              [](auto& l) -> auto& { return l.chunks.rendered; }),
+          measured(
+              "chunks_clear", "32×32 chunks", "of the sprites rendered, in which nothing was",
+              [](auto& l) -> auto& { return l.chunks.clear; }),
+          measured(
+              "fragments", "fragments", "stored for pixels that are covered in part, or translucent",
+              [](auto& l) -> auto& { return l.fragments; }),
+          measured(
+              "texture_samples", "samples", "filtered look-ups, trilinear or bilinear",
+              [](auto& l) -> auto& { return l.texture_samples; }),
+          measured(
+              "sprite_bytes", "bytes", "of the sprites that the frame shows, as they are stored",
+              [](auto& l) -> auto& { return l.sprite_bytes; }),
+          measured(
+              "modelled_ms", "ms", "modelled time of the frame on the profile talisman-1996",
+              [](auto& l) -> auto& { return l.modelled_ms; })};
+}
+
+template <typename Member>
+Column<FrameLine> sorting(const char* name, const char* unit, const char* meaning, Member member) {
+  return stored<FrameLine>(std::string("visibility_") + name, std::string("visibility/") + name, unit,
+                           meaning, member);
+}
+
+Columns visibility() {
+  return {sorting(
+              "layers", "layers", "that were sorted",
+              [](auto& l) -> auto& { return l.visibility->counters.layers; }),
+          sorting(
+              "queries", "bodies", "whose possible occluders were looked up",
+              [](auto& l) -> auto& { return l.visibility->counters.queries; }),
+          sorting(
+              "pairs", "pairs", "of bodies that extents cannot tell apart in view",
+              [](auto& l) -> auto& { return l.visibility->counters.pairs; }),
+          sorting(
+              "exact_tests", "pairs", "of these, tested on the hulls",
+              [](auto& l) -> auto& { return l.visibility->counters.exact_tests; }),
+          sorting(
+              "edges", "pairs", "of bodies of which one can occlude the other",
+              [](auto& l) -> auto& { return l.visibility->counters.edges; }),
+          sorting(
+              "swaps", "layers", "that moved within last frame's line",
+              [](auto& l) -> auto& { return l.visibility->counters.swaps; }),
+          sorting(
+              "components", "components", "single layers and cycles together",
+              [](auto& l) -> auto& { return l.visibility->counters.components; }),
+          sorting(
+              "merged_components", "components", "cycles that share a sprite",
+              [](auto& l) -> auto& { return l.visibility->counters.merged_components; }),
+          sorting(
+              "merged_layers", "layers", "in these",
+              [](auto& l) -> auto& { return l.visibility->counters.merged_layers; }),
+          sorting(
+              "resolved_components", "components", "cycles that an expression of the compositor shows",
+              [](auto& l) -> auto& { return l.visibility->resolved.components; }),
+          sorting(
+              "resolved_layers", "layers", "in these",
+              [](auto& l) -> auto& { return l.visibility->resolved.layers; }),
+          sorting(
+              "expression_registers", "registers", "images that one expression keeps at once, at most",
+              [](auto& l) -> auto& { return l.visibility->resolved.registers; }),
+          sorting(
+              "expression_reads", "reads", "of sprites by the expressions",
+              [](auto& l) -> auto& { return l.visibility->resolved.reads; }),
+          sorting(
+              "merged_parts", "parts", "of all merged sprites together",
+              [](auto& l) -> auto& { return l.visibility->merged_parts; })};
+}
+
+Columns budget_gap() {
+  return {stored<FrameLine>(
+              "budget_gap_greedy_px", "budget_gap/greedy_px", "px", "benefit of the layers chosen",
+              [](auto& l) -> auto& { return l.budget_gap->greedy_px; }),
+          stored<FrameLine>(
+              "budget_gap_optimal_px", "budget_gap/optimal_px", "px", "of the best choice",
+              [](auto& l) -> auto& { return l.budget_gap->optimal_px; }),
+          computed<FrameLine>("budget_gap", "budget_gap/gap", "", "share of the best that was missed, 0 to 1",
+                              [](const FrameLine& l) { return l.budget_gap->gap(); }),
+          stored<FrameLine>(
+              "budget_gap_exact", "budget_gap/exact", "", "the best was proved to be that",
+              [](auto& l) -> auto& { return l.budget_gap->exact; })};
+}
+
+/// One comparison of pictures. `Which` returns a Quality by reference.
+template <typename Which>
+Columns quality(const std::string& which, const std::string& what, Which) {
+  const auto column = [&](const char* name, const char* unit, const std::string& meaning, auto member) {
+    return stored<FrameLine>("quality_" + which + "_" + name, "quality/" + which + "/" + name, unit, meaning,
+                             member);
+  };
+  return {column(
+              "psnr_db", "dB", what + ": PSNR; null: identical",
+              [](auto& l) -> auto& { return Which{}(l).psnr_db; }),
+          column(
+              "ssim", "", what + ": structural similarity, at most 1",
+              [](auto& l) -> auto& { return Which{}(l).ssim; }),
+          column(
+              "flip", "", what + ": FLIP, 0 to 1", [](auto& l) -> auto& { return Which{}(l).flip; }),
+          column(
+              "max_difference", "code values", what + ": largest of a channel",
+              [](auto& l) -> auto& { return Which{}(l).max_difference; }),
+          column(
+              "changed_pixels", "", what + ": share of pixels that differ",
+              [](auto& l) -> auto& { return Which{}(l).changed_pixels; })};
+}
+
+void make_quality(FrameLine& line) {
+  line.quality.emplace();
+  for (Quality* q : {&line.quality->total, &line.quality->reuse, &line.quality->resampling})
+    q->psnr_db = INFINITY;  // null when read
+}
+
+std::vector<ColumnGroup<FrameLine>> groups() {
+  return {
+      {"compression", "with --compression", false,
+       [](const FrameLine& l) { return l.compression.has_value(); },
+       [](FrameLine& l) { l.compression.emplace(); }},
+      {"visibility", "where layers were sorted; null: the groups alone gave the order", true,
+       [](const FrameLine& l) { return l.visibility.has_value(); },
+       [](FrameLine& l) { l.visibility.emplace(); }},
+      {"budget_gap", "with --budget-gap", false, [](const FrameLine& l) { return l.budget_gap.has_value(); },
+       [](FrameLine& l) { l.budget_gap.emplace(); }},
+      {"quality", "with --quality", false, [](const FrameLine& l) { return l.quality.has_value(); },
+       make_quality}};
+}
+
+}  // namespace
+
+const ColumnTable<FrameLine>& frame_table() {
+  static const ColumnTable<FrameLine> table = [] {
+    ColumnTable<FrameLine> t{"frames", "talisman.frame/1", {}, groups()};
+    for (const Columns& part :
+         {counters(), work(), drawing(),
+          compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), visibility(),
+          budget_gap(),
+          quality(
+              "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
+          quality(
+              "reuse", "displayed against `reference`", [](auto& l) -> auto& { return l.quality->reuse; }),
+          quality(
+              "resampling", "`reference` against `direct`",
+              [](auto& l) -> auto& { return l.quality->resampling; })})
+      t.columns.insert(t.columns.end(), part.begin(), part.end());
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "regulator/profile.h"
+#include "sequences/results/column_tables.h"
+#include "sequences/results/shared_columns.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using Columns = std::vector<Column<RunRow>>;
+
+std::optional<MeanQuality> mean_quality(const Summary& summary, Quality FrameQuality::*which) {
+  MeanQuality mean;
+  int frames = 0;
+  for (const FrameLine& line : summary.frames) {
+    if (!line.quality) continue;
+    const Quality& q = (*line.quality).*which;
+    mean.mse += std::isfinite(q.psnr_db) ? 255.0 * 255.0 / std::pow(10.0, q.psnr_db / 10) : 0;
+    mean.ssim += q.ssim;
+    mean.flip += q.flip;
+    ++frames;
+  }
+  if (frames == 0) return std::nullopt;
+  for (double* value : {&mean.mse, &mean.ssim, &mean.flip}) *value /= frames;
+  return mean;
+}
+
+VisibilityTotals visibility_totals(const Summary& summary) {
+  VisibilityTotals sum;
+  for (const FrameLine& line : summary.frames) {
+    if (!line.visibility) continue;
+    const layers::VisibilityCounters& c = line.visibility->counters;
+    ++sum.frames;
+    sum.cyclic_frames += c.merged_components + line.visibility->resolved.components > 0;
+    sum.queries += c.queries;
+    sum.pairs += c.pairs;
+    sum.exact_tests += c.exact_tests;
+    sum.swaps += c.swaps;
+    sum.merged_layers += c.merged_layers;
+    sum.merged_parts += line.visibility->merged_parts;
+  }
+  return sum;
+}
+
+template <typename Get>
+Column<RunRow> of_run(std::string name, std::string unit, std::string meaning, Get get) {
+  const std::string path = name;
+  return computed<RunRow>(std::move(name), path, std::move(unit), std::move(meaning), get);
+}
+
+/// Null in a run that was only planned.
+template <typename Get>
+Column<RunRow> measured(std::string name, std::string unit, std::string meaning, Get get) {
+  Column<RunRow> column = of_run(std::move(name), std::move(unit), std::move(meaning), get);
+  column.get = [](const RunRow& row) {
+    return row.summary.planned_only ? Value(Null{}) : value_of(Get{}(row));
+  };
+  return column;
+}
+
+/// Room for what other tables fill in.
+Column<RunRow> place(const char* path) {
+  return computed<RunRow>("", path, "", "", [](const RunRow&) { return Value(Null{}); });
+}
+
+Columns what_was_run() {
+  return {
+      of_run("sequence", "", "name of the sequence", [](const RunRow& r) { return r.summary.sequence; }),
+      of_run("policy", "", "of the regulator", [](const RunRow& r) { return r.summary.policy; }),
+      of_run("warp", "", "curve of the warps", [](const RunRow& r) { return r.summary.warp; }),
+      of_run("compositor", "", "talisman (over only) or extended",
+             [](const RunRow& r) { return r.summary.compositor; }),
+      of_run("frames", "frames", "of this run", [](const RunRow& r) { return r.summary.frames.size(); }),
+      of_run("first_frame", "", "number of the first of them",
+             [](const RunRow& r) { return r.summary.frames.empty() ? 0 : r.summary.frames.front().frame; }),
+      computed<RunRow>("display_width_px", "display_px/0", "px", "of the display",
+                       [](const RunRow& r) { return r.summary.display_px.x; }),
+      computed<RunRow>("display_height_px", "display_px/1", "px", "of the display",
+                       [](const RunRow& r) { return r.summary.display_px.y; }),
+      place("layers")};
+}
+
+std::int64_t total_of(const RunRow& row, std::int64_t (*number)(const FrameLine&)) {
+  return row.summary.total(number);
+}
+
+Columns work() {
+  return {
+      of_run("mean_update_rate", "",
+             "mean over the author's layers of the share of frames in which they are drawn",
+             [](const RunRow& r) { return r.summary.mean_update_rate(); }),
+      of_run("cost_weighted_update_rate", "", "the same, weighted by polygons",
+             [](const RunRow& r) { return r.summary.cost_weighted_update_rate(); }),
+      of_run("polygons_rendered", "triangles", "of the layers rendered, and of casters in shadow maps",
+             [](const RunRow& r) { return r.summary.polygons_rendered(); }),
+      of_run("polygons_reference", "triangles", "of all layers in view: what `reference` would draw",
+             [](const RunRow& r) {
+               return total_of(r, [](const FrameLine& l) { return l.polygons.reference; });
+             }),
+      of_run("pixels_rendered", "texels", "of the rectangles of the sprites rendered",
+             [](const RunRow& r) { return r.summary.pixels_rendered(); }),
+      of_run(
+          "pixels_reference", "texels", "the same for all layers in view",
+          [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.pixels.reference; }); }),
+      measured(
+          "pixels_filled", "texels", "writes by the renderer",
+          [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.pixels.filled; }); }),
+      measured("pixels_composited", "pixels", "reads of sprites by the compositor",
+               [](const RunRow& r) {
+                 return total_of(r, [](const FrameLine& l) { return l.pixels.composited; });
+               }),
+      measured(
+          "chunks_rendered", "32×32 chunks", "in which something was drawn",
+          [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.chunks.rendered; }); }),
+      measured(
+          "chunks_clear", "32×32 chunks", "of the sprites rendered, in which nothing was",
+          [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.chunks.clear; }); }),
+      place("effects")};
+}
+
+template <typename Get>
+Column<RunRow> sorting(const char* name, const char* unit, const char* meaning, Get get) {
+  return computed<RunRow>(std::string("visibility_") + name, std::string("visibility/") + name, unit, meaning,
+                          get);
+}
+
+Columns visibility() {
+  return {sorting("frames_sorted", "frames", "in which layers were sorted",
+                  [](const RunRow& r) { return r.visibility.frames; }),
+          sorting("frames_with_cycles", "frames", "in which layers occluded each other in a cycle",
+                  [](const RunRow& r) { return r.visibility.cyclic_frames; }),
+          sorting("queries", "bodies", "whose possible occluders were looked up",
+                  [](const RunRow& r) { return r.visibility.queries; }),
+          sorting("pairs", "pairs", "of bodies that extents cannot tell apart in view",
+                  [](const RunRow& r) { return r.visibility.pairs; }),
+          sorting("exact_tests", "pairs", "of these, tested on the hulls",
+                  [](const RunRow& r) { return r.visibility.exact_tests; }),
+          sorting("swaps", "layers", "that moved within last frame's line",
+                  [](const RunRow& r) { return r.visibility.swaps; }),
+          sorting("merged_layers", "layers", "that shared a sprite",
+                  [](const RunRow& r) { return r.visibility.merged_layers; }),
+          sorting("merged_parts", "parts", "of the merged sprites",
+                  [](const RunRow& r) { return r.visibility.merged_parts; }),
+          sorting("resolved_components", "components", "cycles that an expression of the compositor shows",
+                  [](const RunRow& r) { return r.resolved.components; }),
+          sorting("resolved_layers", "layers", "in these", [](const RunRow& r) { return r.resolved.layers; }),
+          sorting("expression_registers", "registers", "images that one expression keeps at once, at most",
+                  [](const RunRow& r) { return r.resolved.registers; }),
+          sorting("expression_reads", "reads", "of sprites by the expressions",
+                  [](const RunRow& r) { return r.resolved.reads; })};
+}
+
+Columns modelled() {
+  return {measured("modelled_ms", "ms", "modelled time of a frame, mean over the frames",
+                   [](const RunRow& r) {
+                     const double frames = static_cast<double>(r.summary.frames.size());
+                     return frames > 0 ? r.summary.total(&FrameLine::modelled_ms) / frames : 0;
+                   }),
+          of_run("modelled_profile", "", "on this hardware",
+                 [](const RunRow&) { return regulator::talisman_1996().name; })};
+}
+
+Columns compression() {
+  Columns columns = compression_columns<RunRow>([](auto& r) -> auto& { return *r.compression; });
+  columns.push_back(computed<RunRow>("compression_quality", "compression/quality", "", "1 to 100",
+                                     [](const RunRow& r) { return r.summary.compression_quality; }));
+  return columns;
+}
+
+Columns budget_gap() {
+  return {computed<RunRow>("budget_gap_mean", "budget_gap/mean", "",
+                           "share of the best choice's benefit that greedy missed, mean over exact_frames",
+                           [](const RunRow& r) { return r.gap.mean; }),
+          computed<RunRow>("budget_gap_max", "budget_gap/max", "", "the largest of them",
+                           [](const RunRow& r) { return r.gap.max; }),
+          computed<RunRow>("budget_gap_frames", "budget_gap/frames", "frames", "with a choice",
+                           [](const RunRow& r) { return r.gap.frames; }),
+          computed<RunRow>("budget_gap_exact_frames", "budget_gap/exact_frames", "frames",
+                           "of them, the best choice was proved",
+                           [](const RunRow& r) { return r.gap.exact_frames; })};
+}
+
+template <typename Which>
+Columns quality(const std::string& group, const std::string& what, Which) {
+  const auto column = [&](const char* name, const char* unit, const std::string& meaning, auto get) {
+    return computed<RunRow>(group + "_" + name, group + "/" + name, unit, meaning, get);
+  };
+  return {column("psnr_db", "dB", what + ": PSNR of the mean squared error; null: identical",
+                 [](const RunRow& r) { return Which{}(r)->psnr_db(); }),
+          column("ssim", "", what + ": structural similarity, mean over the frames",
+                 [](const RunRow& r) { return Which{}(r)->ssim; }),
+          column("flip", "", what + ": FLIP, mean over the frames",
+                 [](const RunRow& r) { return Which{}(r)->flip; })};
+}
+
+std::vector<ColumnGroup<RunRow>> groups() {
+  return {
+      {"visibility", "where layers were sorted in any frame; null: the groups alone gave the order", true,
+       [](const RunRow& r) { return r.visibility.frames > 0; }},
+      {"compression", "with --compression", false, [](const RunRow& r) { return r.compression.has_value(); }},
+      {"budget_gap", "with --budget-gap", false, [](const RunRow& r) { return r.gap.frames > 0; }},
+      {"quality", "with --quality", false, [](const RunRow& r) { return r.quality.has_value(); }},
+      {"quality_of_reuse", "with --quality", false,
+       [](const RunRow& r) { return r.quality_of_reuse.has_value(); }},
+      {"quality_of_resampling", "with --quality", false,
+       [](const RunRow& r) { return r.quality_of_resampling.has_value(); }}};
+}
+
+}  // namespace
+
+RunRow::RunRow(const Summary& s)
+    : summary(s), visibility(visibility_totals(s)), resolved(s.resolved()), gap(s.budget_gap()) {
+  if (s.compression_quality && !s.planned_only) {
+    compression.emplace();
+    for (const FrameLine& line : s.frames)
+      if (line.compression) *compression += *line.compression;
+  }
+  if (s.frames.empty() || !s.frames.front().quality) return;
+  quality = mean_quality(s, &FrameQuality::total);
+  quality_of_reuse = mean_quality(s, &FrameQuality::reuse);
+  quality_of_resampling = mean_quality(s, &FrameQuality::resampling);
+}
+
+const ColumnTable<RunRow>& run_table() {
+  static const ColumnTable<RunRow> table = [] {
+    ColumnTable<RunRow> t{"run", "talisman.summary/1", {}, groups()};
+    for (const Columns& part :
+         {what_was_run(), work(), visibility(), modelled(), compression(), budget_gap(),
+          quality(
+              "quality", "displayed against `direct`", [](auto& r) -> auto& { return r.quality; }),
+          quality(
+              "quality_of_reuse", "displayed against `reference`",
+              [](auto& r) -> auto& { return r.quality_of_reuse; }),
+          quality(
+              "quality_of_resampling", "`reference` against `direct`",
+              [](auto& r) -> auto& { return r.quality_of_resampling; })})
+      t.columns.insert(t.columns.end(), part.begin(), part.end());
+    return t;
+  }();
+  return table;
+}
+
+}  // namespace talisman::sequences

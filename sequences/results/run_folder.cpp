@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/results/run_folder.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "sequences/files/atomic_file.h"
+#include "sequences/files/line_file.h"
+#include "sequences/files/temporary_files.h"
+#include "sequences/results/run_identity.h"
+#include "sequences/results/timing.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+const char* extension_of(FrameFormat format) {
+  switch (format) {
+    case FrameFormat::Png:
+      return ".png";
+    case FrameFormat::Exr:
+      return ".exr";
+    case FrameFormat::None:
+      return "";
+  }
+  return "";
+}
+
+void make_folder(const std::string& path) {
+  std::error_code error;
+  fs::create_directories(path, error);
+  if (error) throw OutputError(path + ": folder cannot be made: " + error.message());
+}
+
+/// run.json of an earlier run; null if there is none. Throws InputError if it is nothing of ours.
+Json earlier_run(const RunOptions& options) {
+  const std::string file = options.out + "/run.json";
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return nullptr;
+  Json run = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
+  return run.is_object() ? run : Json("damaged");
+}
+
+bool is_plan(const Json& run) { return run.is_object() && run.value("kind", "") == "plan"; }
+
+/// Frames that an earlier run completed: their line and their picture are there.
+KeptRun complete_frames(const RunOptions& options) {
+  KeptRun kept;
+  for (const std::string& text : lines_written(options.out + "/frames.jsonl")) {
+    const std::optional<FrameLine> line = frame_line_from_json(text);
+    if (!line || !line->is_drawn()) continue;
+    if (options.format == FrameFormat::None || fs::exists(frame_path(options, line->frame)))
+      kept.frames[line->frame] = *line;
+  }
+  for (const std::string& text : lines_written(options.out + "/timing.jsonl")) {
+    const std::optional<FrameTiming> timing = timing_from_json(text);
+    const auto frame = timing ? kept.frames.find(timing->frame) : kept.frames.end();
+    if (frame != kept.frames.end()) frame->second.times = timing->times;
+    if (frame != kept.frames.end() || is_process_line(text)) kept.timing.push_back(text);
+  }
+  return kept;
+}
+
+/// What an earlier run left behind must not be taken for a result of this one. Pictures are removed only where
+/// run.json says that they are ours, and only those with our names.
+void remove_old_results(const RunOptions& options, bool pictures_are_ours) {
+  for (const std::string name : {"decisions.jsonl", "frames.jsonl", "timing.jsonl"})
+    for (const char* state : {"", ".partial"}) fs::remove(options.out + "/" + name + state);
+  fs::remove(options.out + "/summary.json");
+  if (options.plan_only || !pictures_are_ours) return;
+  fs::remove(options.out + "/video.mp4");
+  for (const fs::directory_entry& entry : fs::directory_iterator(options.out + "/frames")) {
+    const std::string stem = entry.path().stem().string(), extension = entry.path().extension().string();
+    const bool numbered = !stem.empty() && stem.find_first_not_of("0123456789") == std::string::npos;
+    if (numbered && (extension == ".png" || extension == ".exr")) fs::remove(entry.path());
+  }
+}
+
+}  // namespace
+
+std::string frame_path(const RunOptions& options, int frame) {
+  char name[32];
+  std::snprintf(name, sizeof name, "%04d%s", frame, extension_of(options.format));
+  return options.out + "/frames/" + name;
+}
+
+KeptRun begin_run(const RunOptions& options, const Json& run) {
+  const std::string run_file = options.out + "/run.json";
+  const Json earlier = earlier_run(options);
+  const bool is_render = !earlier.is_null() && !is_plan(earlier);
+  if (options.plan_only && is_render)
+    throw InputError("says that the folder holds pictures, a plan must go into a folder of its own",
+                     run_file);
+  make_folder(options.out);
+  if (!options.plan_only) make_folder(options.out + "/frames");
+  if (options.separate) make_folder(options.out + "/separate");
+  KeptRun kept;
+  if (options.resume && is_render) {
+    if (!earlier.is_object()) throw InputError("not a run file, must be written by talisman", run_file);
+    if (const std::string difference = first_difference(earlier, run); !difference.empty())
+      throw InputError(difference, run_file);
+    kept = complete_frames(options);
+  }
+  for (const char* folder : {"", "/frames", "/separate"}) remove_abandoned_files(options.out + folder);
+  if (kept.frames.empty()) {
+    kept = {};
+    remove_old_results(options, is_render);
+  }
+  write_text_atomically(run_file, run.dump(2) + "\n");
+  return kept;
+}
+
+}  // namespace talisman::sequences

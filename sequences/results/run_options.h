@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What a run writes, and where: everything that is not a setting of the pipeline.
+
+#include <string>
+
+#include "sequences/files/image_io.h"
+#include "sequences/files/progress.h"
+
+namespace talisman::sequences {
+
+struct RunOptions {
+  std::string out;                      ///< result folder, made if missing
+  int first_frame = 0, last_frame = 0;  ///< inclusive
+  FrameFormat format = FrameFormat::Png;
+  bool plan_only = false;  ///< decisions and costs without pixels
+  bool separate = false;   ///< also each shade sprite alone, and the sums, in DIR/separate
+  bool video = false, overlay = false, quality = false, resume = false;
+  ProgressKind progress = ProgressKind::Auto;
+};
+
+}  // namespace talisman::sequences

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The settings of a run as one list of (name, value). Whatever writes, compares or hashes settings walks this
+/// list, so that none of them can lack a field.
+///
+/// Names are those of the command line and of sequence files where the user can set the value there. Every
+/// struct is taken apart by a structured binding, which no longer compiles when a member is added; that each
+/// member is also named is tested (tests/sequences/results/settings_json_test.cpp).
+
+#include "sequences/pipeline/step.h"
+
+namespace talisman::sequences {
+
+namespace settings_fields {
+
+template <typename Thresholds, typename Visit>
+void thresholds(Thresholds& t, const Visit& visit) {
+  auto& [geometric, magnification, minification, anisotropy, uncovered, turned, photometric, light_angle] = t;
+  visit("geometric_px", geometric);
+  visit("magnification", magnification);
+  visit("minification", minification);
+  visit("anisotropy", anisotropy);
+  visit("uncovered_px", uncovered);
+  visit("turned_px", turned);
+  visit("photometric", photometric);
+  visit("light_angle_rad", light_angle);
+}
+
+template <typename Budget, typename Visit>
+void budget(Budget& b, const Visit& visit) {
+  auto& [polygons, pixels, chunks, ms, min_resolution, cutoff] = b;
+  visit("budget_polygons", polygons);
+  visit("budget_pixels", pixels);
+  visit("budget_chunks", chunks);
+  visit("budget_ms", ms);
+  visit("min_resolution", min_resolution);
+  visit("cutoff_px", cutoff);
+}
+
+template <typename Options, typename Visit>
+void regulator(Options& options, const Visit& visit) {
+  auto& [policy, hold_frames, color_warp, of_thresholds, lookahead, of_budget] = options;
+  visit("policy", policy);
+  visit("hold_frames", hold_frames);
+  visit("color_warp", color_warp);
+  thresholds(of_thresholds, visit);
+  auto& [lookahead_frames, predict] = lookahead;
+  visit("lookahead_frames", lookahead_frames);
+  visit("predict", predict);
+  budget(of_budget, visit);
+}
+
+template <typename FitOptions, typename Visit>
+void fit(FitOptions& options, const Visit& visit) {
+  auto& [relative_gap, max_iterations, decide] = options;
+  visit("fit_relative_gap", relative_gap);
+  visit("fit_max_iterations", max_iterations);
+  visit("fit_decide_px", decide);
+}
+
+template <typename Extents, typename Placement, typename Visit>
+void sprites(Extents& extents, Placement& placement, const Visit& visit) {
+  auto& [expected_reuse, max_growth] = extents;
+  visit("expected_reuse_frames", expected_reuse);
+  visit("max_growth", max_growth);
+  auto& [directions, rotation_gain, resolution_scale, motion, motion_density, max_sprite] = placement;
+  visit("slab_directions", directions);
+  visit("min_rotation_gain", rotation_gain);
+  visit("resolution_scale", resolution_scale);
+  visit("motion", motion);
+  visit("motion_density", motion_density);
+  visit("max_sprite_px", max_sprite);
+}
+
+template <typename RenderOptions, typename Visit>
+void render(RenderOptions& options, const Visit& visit) {
+  auto& [shading, mipmaps, filter, max_anisotropy, samples, max_fragments, merge_depth, merge_color] =
+      options;
+  visit("shading", shading);
+  visit("mipmaps", mipmaps);
+  visit("texture_filter", filter);
+  visit("max_anisotropy", max_anisotropy);
+  visit("samples", samples);
+  visit("max_fragments_per_chunk", max_fragments);
+  visit("merge_depth", merge_depth);
+  visit("merge_color", merge_color);
+}
+
+}  // namespace settings_fields
+
+/// Calls visit(name, value) for every setting, always in the same order. `AnySettings` is Settings or const
+/// Settings; the values are references into it.
+template <typename AnySettings, typename Visit>
+void for_each_setting(AnySettings& settings, const Visit& visit) {
+  auto& [regulator, curve, fit, view, bound, extents, placement, render, compression, explicit_order, cycles,
+         compositor, fps, frames, budget_gap] = settings;
+  auto& [display, clip_margin] = view;
+  visit("display_px", display);
+  visit("clip_margin", clip_margin);
+  settings_fields::regulator(regulator, visit);
+  visit("warp", curve);
+  settings_fields::fit(fit, visit);
+  visit("bound", bound);
+  settings_fields::sprites(extents, placement, visit);
+  settings_fields::render(render, visit);
+  visit("compression", compression);
+  visit("explicit_order", explicit_order);
+  visit("cycles", cycles);
+  visit("compositor", compositor);
+  visit("fps", fps);
+  visit("sequence_frames", frames);
+  visit("budget_gap", budget_gap);
+}
+
+}  // namespace talisman::sequences

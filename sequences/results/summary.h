@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// A whole run in numbers: summary.json (talisman.summary/1), and the table that the tool prints at the end. Wall
+/// times are in the printed table and in timing.jsonl, not in summary.json.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "layers/effects.h"
+#include "sequences/results/frame_lines.h"
+
+namespace talisman::sequences {
+
+/// One layer over the whole run.
+struct LayerSummary {
+  std::string name;
+  int parts = 0, polygons = 0;
+  int renders = 0, frames_shown = 0;
+  double sum_geometric_px = 0;  ///< over the frames in which it was shown
+  double max_geometric_px = 0;
+  layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
+  double sum_resolution = 0;      ///< over the frames in which it was shown
+  int merged_renders = 0;         ///< renders of aggregates in which it took part; not among `renders`
+  bool is_aggregate = false;      ///< counted with its members where rates are averaged
+  double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
+  /// The share of frames in which it was drawn anew, alone or in an aggregate.
+  double drawn_rate(int frames) const {
+    return frames > 0 ? static_cast<double>(renders + merged_renders) / frames : 0;
+  }
+  double mean_geometric_px() const { return frames_shown > 0 ? sum_geometric_px / frames_shown : 0; }
+  double mean_resolution() const { return frames_shown > 0 ? sum_resolution / frames_shown : 1; }
+};
+
+/// How far the greedy choice was from the best one. Mean and largest gap are those of the frames in which the
+/// best one was proved.
+struct GapSummary {
+  int frames = 0;
+  int exact_frames = 0;  ///< of them, the best choice was proved
+  double mean = 0, max = 0;
+};
+
+/// The whole run.
+struct Summary {
+  std::string sequence, policy, warp, compositor = "talisman";
+  layers::ivec2 display_px{0, 0};
+  std::optional<int> compression_quality;
+  bool planned_only = false;
+  std::vector<LayerSummary> layers;
+  std::vector<layers::EffectCall> effects;
+  /// One per entry of `effects`: renders of layers that use it; for shadow maps the maps drawn.
+  std::vector<int> effect_passes;
+  std::vector<FrameLine> frames;
+
+  /// Over the author's layers; a render of an aggregate counts for each of its members.
+  double mean_update_rate() const;
+  double cost_weighted_update_rate() const;  ///< weighted by polygons
+  /// `number` of a frame (a member, or a function of a FrameLine), added up.
+  template <typename Number>
+  auto total(const Number& number) const {
+    std::decay_t<std::invoke_result_t<Number, const FrameLine&>> sum = 0;
+    for (const FrameLine& line : frames) sum += std::invoke(number, line);
+    return sum;
+  }
+  std::int64_t polygons_rendered() const;
+  std::int64_t pixels_rendered() const;
+  double plan_ms() const;
+  GapSummary budget_gap() const;
+  ResolvedCounters resolved() const;               ///< added up over the frames; registers: at most
+  double planning_us_per_layer_and_frame() const;  ///< plan time over layers × frames
+};
+
+Summary start_summary(const Pipeline& pipeline, const std::string& sequence);
+/// Adds one frame's decisions; aggregates are added to the layers when they are first shown.
+void add_decisions(Summary& summary, const FrameReport& report, const PipelineState& state);
+std::string json_of(const Summary& summary);
+/// The table that the tool prints at the end.
+std::string table_of(const Summary& summary);
+
+}  // namespace talisman::sequences
