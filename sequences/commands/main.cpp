@@ -9,6 +9,8 @@
 #include <iostream>
 #include <string>
 
+#include <oneapi/tbb/global_control.h>
+#include <CLI/CLI.hpp>
 #include "sequences/commands/accuracy.h"
 #include "sequences/commands/cache_options.h"
 #include "sequences/commands/command_tree.h"
@@ -20,8 +22,6 @@
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/warps.h"
 #include "sequences/pictures/diff.h"
-#include <CLI/CLI.hpp>
-#include <oneapi/tbb/global_control.h>
 
 namespace {
 

@@ -25,7 +25,7 @@ class Call {
   /// Called once per frame, also for those before the range; what it throws ends the run.
   using BeforeFrame = std::function<void()>;
   /// Called once per frame of the range.
-  using Planned = std::function<void(const Pipeline&, const PipelineState&, const FrameReport&)>;
+  using Planned = std::function<void(const PipelineState&, const FrameReport&)>;
 
   /// Plans the frames up to the last of the range.
   void plan(const BeforeFrame& before_frame, const Planned& planned) const;

@@ -70,10 +70,10 @@ DecisionColumns::DecisionColumns() : rows_(std::make_unique<Rows>()) {
 }
 DecisionColumns::~DecisionColumns() = default;
 
-void DecisionColumns::add(const Pipeline& pipeline, const PipelineState& state, const FrameReport& report) {
+void DecisionColumns::add(const PipelineState& state, const FrameReport& report) {
   const auto& table = decision_table();
   for (const int layer : layers_with_lines(state, report)) {
-    const DecisionRow row{pipeline, report, report.plan.decisions[layer]};
+    const DecisionRow row{report, report.plan.decisions[layer]};
     std::vector<bool> has_group;
     for (const auto& group : table.groups) has_group.push_back(group.has(row));
     for (std::size_t k = 0; k < table.columns.size(); ++k) {

@@ -82,9 +82,7 @@ py::dict plan(const std::string& sequence, const Words& words) {
   sequences::DecisionColumns columns;
   {
     const py::gil_scoped_release others_run;
-    call.plan(heed_signals, [&](const auto& pipeline, const auto& state, const auto& report) {
-      columns.add(pipeline, state, report);
-    });
+    call.plan(heed_signals, [&](const auto& state, const auto& report) { columns.add(state, report); });
   }
   py::dict result;
   for (const sequences::DecisionColumn& column : columns.columns())

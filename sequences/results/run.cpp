@@ -134,8 +134,7 @@ class Runner {
   void hand_over(FrameReport report) {
     std::optional<FrameQuality> quality;
     if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
-    if (prepared_ && options_.separate)
-      write_separate(pipeline_, state_, report, options_.out + "/separate");
+    if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     writer_.submit([this, shared, quality] { finish_frame(*shared, quality); });
   }

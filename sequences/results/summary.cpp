@@ -59,7 +59,8 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   if (settings.compositor == Compositor::Extended) summary.compositor = "extended";
   summary.display_px = settings.view.display_px;
   if (settings.compression) summary.compression_quality = settings.compression->quality;
-  summary.effects = layers::effects_called_for(pipeline.scene, pipeline.authored.set().layers, run_effects(settings));
+  summary.effects =
+      layers::effects_called_for(pipeline.scene, pipeline.authored.set().layers, run_effects(settings));
   summary.effect_passes.assign(summary.effects.size(), 0);
   for (const layers::Layer& layer : pipeline.authored)
     summary.layers.push_back(row_of(layer.name, static_cast<int>(layer.parts.size()), layer.polygons, false));

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tool as a user meets it: exit codes, one clear error line, no half-written results, runs that can be
 // continued.
+#include <sys/wait.h>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
-#include <sys/wait.h>
 #include <set>
 #include <string>
 
