@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Plans one second of ten boxes that turn, a layer each, without drawing a pixel, and prints when each is drawn again and
 // why: the faster a box turns, the sooner its old picture is too wrong.
+#include <talisman/sequences/pipeline/make_pipeline.h>
 #include <talisman/sequences/pipeline/step.h>
 
 #include <cstdio>

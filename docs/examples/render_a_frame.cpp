@@ -2,6 +2,7 @@
 // Draws frame 12 of ten boxes that turn, as the compositor shows it, into boxes.ppm: sprites of earlier frames are
 // warped where that is good enough.
 #include <talisman/chunker/composite.h>
+#include <talisman/sequences/pipeline/make_pipeline.h>
 #include <talisman/sequences/pipeline/step.h>
 
 #include <cstdio>

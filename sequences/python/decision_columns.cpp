@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/results/column_tables.h"
 
 namespace talisman::sequences {

@@ -32,8 +32,8 @@ class Fit(NamedTuple):
     bound_px: Optional[Tuple[float, float]]
     """Certified (lower, upper) bounds of the least largest distance that any warp of the family reaches; None for "rms"."""
     status: str
-    """"converged", "not_converged" (the bound is not tight), or why another family was used: "too_few_points",
-    "degenerate"; "not_finite": a point is not a number, the warp is the identity and the error 1e30."""
+    """"converged", "not converged" (the bound is not tight), or why another family was used: "too few points",
+    "degenerate"; "not finite": a point is no number, the warp is the identity and the error 1e30."""
     family: str
     """The family of the warp: the one that was asked for or a simpler one (see status)."""
     rms_px: float
