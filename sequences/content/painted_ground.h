@@ -7,8 +7,8 @@
 ///            the program's code
 ///   content  for each window width and height (32 bits each), then the texels, 4 bytes each
 ///
-/// The pyramids that the renderer makes of these textures are not kept: they are 21 bytes a texel in place of
-/// 4, and reading them takes longer than making them.
+/// The pyramids that the renderer makes of these textures are not kept: of the 5.7 million texels of the canyon
+/// they are 115 MB, and to read them takes as long (0.8 s of one processor) as to make them (0.7 to 0.9 s).
 
 #include <vector>
 

@@ -18,6 +18,7 @@ using layers::ivec2;
 
 constexpr Rgb kPaper{28, 30, 36};  ///< where a magnified picture has no pixels
 constexpr int kFont = cv::FONT_HERSHEY_SIMPLEX;
+constexpr int kThickness = 2;     ///< thinner lines of OpenCV fade at the border of the picture
 constexpr int kFractionBits = 6;  ///< of the places of lines: 1/64 px
 
 cv::Scalar scalar(Rgb color) { return {double(color[0]), double(color[1]), double(color[2])}; }
@@ -69,14 +70,14 @@ void draw_text(Image8& image, const std::string& text, ivec2 at, Rgb color, int 
               scalar(color), 1, cv::LINE_AA);
 }
 
-void draw_line(Image8& image, dvec2 from, dvec2 to, Rgb color, int scale) {
+void draw_line(Image8& image, dvec2 from, dvec2 to, Rgb color) {
   if (image.rgb.empty()) return;
   const auto fixed_point = [](dvec2 p) {  // OpenCV counts from the centre of the first pixel
     return cv::Point(static_cast<int>(std::lround((p.x - 0.5) * (1 << kFractionBits))),
                      static_cast<int>(std::lround((p.y - 0.5) * (1 << kFractionBits))));
   };
   const std::vector<cv::Point> ends{fixed_point(from), fixed_point(to)};
-  cv::polylines(view_of(image), ends, false, scalar(color), scale, cv::LINE_AA, kFractionBits);
+  cv::polylines(view_of(image), ends, false, scalar(color), kThickness, cv::LINE_AA, kFractionBits);
 }
 
 void tint(Image8& image, const Crop& where, Rgb color, double share) {

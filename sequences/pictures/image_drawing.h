@@ -30,8 +30,8 @@ layers::ivec2 text_size(const std::string& text, int scale);
 void draw_text(Image8& image, const std::string& text, layers::ivec2 at, Rgb color, int scale);
 
 /// An antialiased line between two places in the picture, in pixels (the centre of the first pixel is at 0.5,
-/// 0.5), at most 32000 pixels from the picture. Of `scale` 1 it is 1.5 pixels wide, of 2 it is 3.5.
-void draw_line(Image8& image, layers::dvec2 from, layers::dvec2 to, Rgb color, int scale);
+/// 0.5), at most 32000 pixels from the picture. It covers 3.4 pixels across, of which two wholly.
+void draw_line(Image8& image, layers::dvec2 from, layers::dvec2 to, Rgb color);
 
 /// Mixes `color` into a rectangle; `share` of it, 0 … 1.
 void tint(Image8& image, const Crop& where, Rgb color, double share);

@@ -17,7 +17,7 @@ using layers::dvec3;
 using layers::ivec2;
 using layers::RectI;
 
-constexpr int kLargePx = 600;      // from this size on pictures have letters and lines of the larger size
+constexpr int kLargePx = 600;      // from this size on pictures have the larger letters
 constexpr double kMarginPx = 2;    // lines just outside still reach in
 constexpr int kLabelMarginPx = 3;  // of the letters in their box
 constexpr Rgb kLabelGround{12, 12, 16};
@@ -171,7 +171,7 @@ void draw_outlines(Image8& image, const std::vector<Outline>& outlines, int olde
   for (const Outline& outline : outlines) {
     const auto edges = visible_edges(outline, image.width, image.height);
     for (const Segment& edge : edges)
-      draw_line(image, edge.a, edge.b, age_color(outline.age_frames, oldest_frames), scale);
+      draw_line(image, edge.a, edge.b, age_color(outline.age_frames, oldest_frames));
     anchors.push_back(label_anchor(outline, edges, image.width, image.height));
   }
   Labels labels(image, scale);

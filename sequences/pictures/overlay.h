@@ -4,7 +4,7 @@
 /// Each sprite's outline, coloured by age, drawn on the frame (the boxes of [LS97 Fig. 24]):
 /// re-renders can be seen.
 ///
-/// Lines are antialiased, 1.5 px wide (3.5 px in pictures of 600 px and more). A perspective map keeps straight lines straight, so an edge is
+/// Lines are antialiased and about 3 px wide. A perspective map keeps straight lines straight, so an edge is
 /// clipped once, in homogeneous coordinates, to the picture and to denominators above 0; what is behind the
 /// viewer, singular or not a number is not drawn. Labels stand on a dark ground at the first corner in view,
 /// are moved into the picture, and step aside for labels already there.

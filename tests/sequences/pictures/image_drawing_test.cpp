@@ -158,7 +158,7 @@ TEST(ImageDrawing, IsTheSameForAnyNumberOfThreads) {
     cv::setNumThreads(threads);
     Image8 image = noise(700, 500, 6);
     draw_text(image, "threads", {20, 20}, kWhite, 2);
-    draw_line(image, {3.25, 400.5}, {690.75, 10}, {250, 10, 20}, 2);
+    draw_line(image, {3.25, 400.5}, {690.75, 10}, {250, 10, 20});
     tint(image, {100, 100, 400, 300}, kWhite, 0.3);
     return difference(enlarged(image, 3), enlarged(noise(700, 500, 7), 3), 2).rgb;
   };
