@@ -83,7 +83,9 @@ std::string groups_of(const MapKeys& keys, const std::string& when) {
 }
 
 void add_type_rules(const ValueType& type, const std::string& path, std::string& text) {
-  if (!type.rule.empty()) text += "- " + code(path) + ": " + type.rule + "\n";
+  // Once for all branches that have the key.
+  const std::string line = "- " + code(path) + ": " + type.rule + "\n";
+  if (!type.rule.empty() && text.find(line) == std::string::npos) text += line;
   for (const ValueType& of : type.of) add_type_rules(of, path, text);
 }
 
