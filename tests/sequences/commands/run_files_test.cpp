@@ -97,7 +97,9 @@ TEST_F(RunFiles, TimesAreInAFileOfTheirOwn) {
   for (const std::string& line : lines("o/timing.jsonl")) {
     const nlohmann::json json = nlohmann::json::parse(line);
     ++kinds[json["schema"]];
-    if (json["schema"] == "talisman.process/1") EXPECT_EQ(json["threads"], 2);
+    if (json["schema"] == "talisman.process/1") {
+      EXPECT_EQ(json["threads"], 2);
+    }
     if (json["schema"] == "talisman.timing/1") frames.insert(json["frame"].get<int>());
   }
   EXPECT_EQ(frames, (std::multiset<int>{0, 1, 2, 3}));
