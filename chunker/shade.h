@@ -3,10 +3,10 @@
 
 /// Which colour does a surface have, at a vertex or at a pixel?
 ///
-///   diffuse  = Σ ambient + Σ colour · max(0, N·L)                                  (Lambert)
+///   diffuse  = Σ ambient + Σ colour · max(0, N·L)                                   (Lambert)
 ///   specular = Σ colour · ks · max(0, N·H)ⁿ   where N·L > 0, H = (L + V) / |L + V|  (Blinn-Phong)
-///   colour   = α · (base · vertex colour · diffuse · texel + α_texel · (specular + emissive)),  α = opacity
-///   · α_texel
+///   colour   = α · (base · vertex colour · diffuse · texel + α_texel · (specular + emissive))
+///   α        = opacity · α_texel
 ///
 /// The texel is premultiplied, so the colour is too. Lights do not fall off with distance; a spot's colour is
 /// scaled by t²(3 - 2t), t = (cos θ - cos outer) / (cos inner - cos outer) clamped to 0 … 1. Unlit surfaces
