@@ -42,7 +42,7 @@ bool is_alive(const std::string& process, const std::string& start) {
 
 std::string temporary_name(const std::string& path) {
   static std::atomic<unsigned> counter{0};
-  static const std::string start = start_of("self").value_or("0");
+  const std::string start = start_of("self").value_or("0");  // asked each time: a fork has its own
   const fs::path target(path);
   const std::string unique =
       ".tmp-" + std::to_string(::getpid()) + "-" + start + "-" + std::to_string(counter++) + "-";

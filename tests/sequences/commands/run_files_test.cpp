@@ -97,7 +97,9 @@ TEST_F(RunFiles, TimesAreInAFileOfTheirOwn) {
   for (const std::string& line : lines("o/timing.jsonl")) {
     const nlohmann::json json = nlohmann::json::parse(line);
     ++kinds[json["schema"]];
-    if (json["schema"] == "talisman.process/1") EXPECT_EQ(json["threads"], 2);
+    if (json["schema"] == "talisman.process/1") {
+      EXPECT_EQ(json["threads"], 2);
+    }
     if (json["schema"] == "talisman.timing/1") frames.insert(json["frame"].get<int>());
   }
   EXPECT_EQ(frames, (std::multiset<int>{0, 1, 2, 3}));
@@ -112,10 +114,11 @@ TEST_F(RunFiles, TimesAreInAFileOfTheirOwn) {
 TEST_F(RunFiles, LeftByAKilledRunGoAndOthersStay) {
   const std::string options = "render cube.obj --frames 0-2 --size 64x48 --progress none --out o";
   ASSERT_EQ(run(options).exit_code, 0);
-  // The program 1 runs since the machine started, so it is not one that started at tick 7.
+  // No process has started at that tick yet.
   const std::set<std::string> stay = {".hidden.png", ".tmp-notes"};
   for (const std::string& name : stay) write("o/frames/" + name, "mine");
-  for (const char* folder : {"o/", "o/frames/"}) write(std::string(folder) + ".tmp-1-7-0-0001.png", "half");
+  for (const char* folder : {"o/", "o/frames/"})
+    write(std::string(folder) + ".tmp-1-99999999999999-0-0001.png", "half");
   write("o/decisions.jsonl.partial", "half");
   write("o/frames.jsonl.partial.new", "half");
   ASSERT_EQ(run(options).exit_code, 0);

@@ -114,7 +114,9 @@ TEST(ColumnTables, NamesEndInTheUnit) {
       for (const std::string unit : {"px", "ms", "bytes", "rad", "dB"}) {
         const std::string ending = unit == "dB" ? "_db" : "_" + unit;
         const bool named = c.name.size() > ending.size() && c.name.ends_with(ending);
-        if (named) EXPECT_EQ(c.unit, unit) << c.name;
+        if (named) {
+          EXPECT_EQ(c.unit, unit) << c.name;
+        }
       }
   };
   expect_units(flat_columns(decision_table()));
