@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <iterator>
 
+#include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/run_effects.h"
 #include "sequences/results/column_json.h"
 #include "sequences/results/column_tables.h"
 

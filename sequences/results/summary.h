@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "layers/effects.h"
+#include "sequences/pipeline/pipeline.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {
