@@ -11,7 +11,7 @@
 #include "sequences/commands/accuracy_renderer.h"
 #include "sequences/commands/experiment_options.h"
 #include "sequences/experiments/warps/solver_measure.h"
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 #include "sequences/pictures/plot.h"
 

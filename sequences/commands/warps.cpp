@@ -10,7 +10,7 @@
 #include "sequences/experiments/warps/objects.h"
 #include "sequences/experiments/warps/quality.h"
 #include "sequences/experiments/warps/ranking.h"
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 #include "sequences/pictures/plot.h"
 

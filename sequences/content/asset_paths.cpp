@@ -13,17 +13,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string root_above(fs::path folder) {
-  for (std::error_code error; !folder.empty(); folder = folder.parent_path()) {
-    if (fs::exists(folder / "sequences" / "fetch-assets", error)) return folder.string();
-    if (folder == folder.root_path()) break;
-  }
-  return {};
+/// A source tree is where its programs are built; an installation has its sequences alone.
+bool is_source_tree(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_regular_file(folder / "CMakeLists.txt", error);
 }
 
-std::string assets_folder() {
+/// $XDG_DATA_HOME; the XDG base directory specification has it ignored when it is relative.
+fs::path user_data_folder() {
+  const char* chosen = std::getenv("XDG_DATA_HOME");
+  if (chosen && *chosen == '/') return chosen;
+  const char* home = std::getenv("HOME");
+  return fs::path(home && *home ? home : "/") / ".local" / "share";
+}
+
+fs::path assets_folder() {
   const char* chosen = std::getenv("TALISMAN_ASSETS");
-  return chosen && *chosen ? chosen : repository_root() + "/assets";
+  if (chosen && *chosen) return chosen;
+  const fs::path data = data_folder();
+  return is_source_tree(data) ? data / "assets" : user_data_folder() / "talisman" / "assets";
 }
 
 /// "gl-117-data" of "gl-117-data:/usr/share/…"; empty when the path names no package. Debian Policy 5.6.7:
@@ -45,25 +53,24 @@ std::string fetch_name(const std::string& sequence_file) {
 
 }  // namespace
 
-std::string repository_root() {
-  const std::string root = root_above(program_folder());
-  std::error_code error;
-  return root.empty() ? root_above(fs::current_path(error)) : root;
+std::string fetch_command(const std::string& name) {
+  const std::string data = data_folder();
+  const std::string folder = data.empty() || is_source_tree(data) ? "" : data + "/";
+  return folder + "sequences/fetch-assets " + name;
 }
 
 std::string resolve_asset(const std::string& path, const std::string& sequence_file, int line) {
   std::error_code error;
   const std::string package = package_of(path);
   if (!package.empty()) {
-    const fs::path folder = fs::path(assets_folder()) / package;
+    const fs::path folder = assets_folder() / package;
     const fs::path found = folder.string() + path.substr(package.size() + 1);
     if (fs::is_regular_file(found, error)) return found.string();
     if (fs::is_directory(folder, error))
       throw InputError("'" + path + "' is not in package " + package + ", rule: a file of the package",
                        sequence_file, line);
-    throw InputError("'" + path +
-                         "' is not there, rule: content is fetched first, by sequences/fetch-assets " +
-                         fetch_name(sequence_file),
+    throw InputError("'" + path + "' is not there, rule: content is fetched first, by " +
+                         fetch_command(fetch_name(sequence_file)),
                      sequence_file, line);
   }
   const fs::path found =
@@ -75,7 +82,7 @@ std::string resolve_asset(const std::string& path, const std::string& sequence_f
 }
 
 std::string sequence_file_of(const std::string& name) {
-  const std::string root = repository_root();
+  const std::string root = data_folder();
   if (root.empty() || name.empty() || name.find("..") != std::string::npos) return {};
   const std::size_t slash = name.find('/');
   const std::string stem = slash == std::string::npos ? name + "/" + name : name;
@@ -87,7 +94,7 @@ std::string sequence_file_of(const std::string& name) {
 std::vector<std::string> sequence_names() {
   std::vector<std::string> names;
   std::error_code error;
-  for (const auto& folder : fs::directory_iterator(repository_root() + "/sequences", error)) {
+  for (const auto& folder : fs::directory_iterator(data_folder() + "/sequences", error)) {
     if (!folder.is_directory()) continue;
     const std::string name = folder.path().filename().string();
     for (const auto& file : fs::directory_iterator(folder.path(), error)) {

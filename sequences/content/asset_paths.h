@@ -3,10 +3,12 @@
 
 /// Where are sequences and their content?
 ///
-/// The root of the repository is the nearest folder above the running program (else above the working
-/// directory) that holds `sequences/fetch-assets`. Content of Debian packages lies in `assets/<package>/`
-/// under the root, or under the folder that the environment variable TALISMAN_ASSETS names. A path in a
-/// sequence file is either `package:/path/inside/the/package` or relative to that file.
+/// The sequences that come with the program lie in the folder sequences/ of files/program_folder.h's
+/// `data_folder`. Content of Debian packages lies in `<assets>/<package>/`, where <assets> is the folder that the
+/// environment variable TALISMAN_ASSETS names; without it, `assets/` of the source tree; for an installed program
+/// `talisman/assets/` in $XDG_DATA_HOME (~/.local/share), since what is installed need not be writable.
+/// sequences/fetch-assets puts it there by the same rule. A path in a sequence file is either
+/// `package:/path/inside/the/package` or relative to that file.
 
 #include <string>
 #include <vector>
@@ -15,8 +17,8 @@
 
 namespace talisman::sequences {
 
-/// Empty when there is none (the program was moved out of its repository).
-std::string repository_root();
+/// The command that fetches the content of sequence (or experiment) `name`, as a user types it.
+std::string fetch_command(const std::string& name);
 
 /// The file that `path`, written in `sequence_file`, means. Throws InputError when it is missing; for content
 /// of a package the error names the command that fetches it.

@@ -8,7 +8,7 @@
 #include <sstream>
 
 #include "sequences/content/ground_texture.h"
-#include "sequences/import/model_import.h"
+#include "sequences/import/texture_io.h"
 
 namespace talisman::sequences {
 

@@ -7,7 +7,7 @@
 
 #include <tbb/parallel_for.h>
 
-#include "sequences/import/model_import.h"
+#include "sequences/import/texture_io.h"
 
 namespace talisman::sequences {
 

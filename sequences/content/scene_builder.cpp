@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "sequences/content/scene_recipe.h"
+#include "sequences/import/texture_io.h"
 
 namespace talisman::sequences {
 

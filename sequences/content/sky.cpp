@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "sequences/content/tile_image.h"
-#include "sequences/import/model_import.h"
+#include "sequences/import/texture_io.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {

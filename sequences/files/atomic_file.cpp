@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequences/files/atomic_file.h"
+
 #include <fcntl.h>
 #include <unistd.h>
 #include <atomic>
@@ -7,8 +9,6 @@
 #include <exception>
 #include <filesystem>
 #include <string_view>
-
-#include "sequences/files/image_io.h"
 
 namespace talisman::sequences {
 namespace {

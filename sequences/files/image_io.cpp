@@ -9,6 +9,7 @@
 #include <OpenImageIO/imageio.h>
 
 #include "layers/check.h"
+#include "sequences/files/atomic_file.h"
 
 namespace talisman::sequences {
 namespace {

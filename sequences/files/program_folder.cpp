@@ -1,13 +1,80 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/files/program_folder.h"
 
+#include <dlfcn.h>
+#include <link.h>
+
+#include <cstdlib>
 #include <filesystem>
+#include <vector>
 
 namespace talisman::sequences {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The file from which this code was loaded; empty when it is the program itself.
+fs::path shared_module() {
+  Dl_info info{};
+  link_map* map = nullptr;
+  const void* here = reinterpret_cast<const void*>(&program_folder);
+  if (::dladdr1(here, &info, reinterpret_cast<void**>(&map), RTLD_DL_LINKMAP) == 0) return {};
+  // Only of the program itself has the dynamic linker no name.
+  return map && map->l_name ? fs::path(map->l_name) : fs::path();
+}
+
+/// `folder` and those above it, the nearest first.
+std::vector<fs::path> upwards(fs::path folder) {
+  std::vector<fs::path> folders;
+  for (; !folder.empty(); folder = folder.parent_path()) {
+    folders.push_back(folder);
+    if (folder == folder.root_path()) break;
+  }
+  return folders;
+}
+
+std::vector<fs::path> places() {
+  std::vector<fs::path> folders = upwards(program_folder());
+  const char* home = std::getenv("TALISMAN_HOME");
+  if (home && *home) folders.emplace_back(home);
+  return folders;
+}
+
+bool has_sequences(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_regular_file(folder / "sequences" / "fetch-assets", error);
+}
+
+}  // namespace
+
 std::string program_folder() {
   std::error_code error;
-  return std::filesystem::read_symlink("/proc/self/exe", error).parent_path().string();
+  const fs::path module = shared_module();
+  const fs::path file =
+      module.empty() ? fs::read_symlink("/proc/self/exe", error) : fs::canonical(module, error);
+  return file.parent_path().string();
+}
+
+std::string importer_program() {
+  std::error_code error;
+  const fs::path beside = fs::path(program_folder()) / "talisman_import";
+  if (fs::is_regular_file(beside, error)) return beside.string();
+  for (const fs::path& folder : places())
+    for (const char* inside : {TALISMAN_LIBEXEC_FOLDER, "bin"})
+      if (const fs::path program = folder / inside / "talisman_import"; fs::is_regular_file(program, error))
+        return program.string();
+  return beside.string();
+}
+
+std::string data_folder() {
+  for (const fs::path& folder : places())
+    for (const fs::path& root : {folder, folder / TALISMAN_DATA_FOLDER})
+      if (has_sequences(root)) return root.string();
+  std::error_code error;
+  for (const fs::path& folder : upwards(fs::current_path(error)))
+    if (has_sequences(folder)) return folder.string();
+  return {};
 }
 
 }  // namespace talisman::sequences

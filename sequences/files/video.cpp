@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequences/files/video.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
 
+#include "sequences/files/atomic_file.h"
 #include "sequences/files/child_process.h"
-#include "sequences/files/image_io.h"
 
 namespace talisman::sequences {
 namespace {

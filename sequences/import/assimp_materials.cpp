@@ -7,6 +7,7 @@
 #include <assimp/material.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/texture_io.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {

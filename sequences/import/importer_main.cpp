@@ -14,6 +14,8 @@
 #include <unistd.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/gltf_scene.h"
+#include "sequences/import/scene_stream.h"
 
 namespace {
 
@@ -48,7 +50,7 @@ int main(int argc, char** argv) {
   if (argc != 4) return fail("usage: talisman_import PATH SECONDS MEGABYTES (started by talisman)");
   limit_ourselves(std::atoi(argv[2]), std::atol(argv[3]));
   try {
-    const auto bytes = talisman::sequences::bytes_from_model(talisman::sequences::read_with_assimp(argv[1]));
+    const auto bytes = talisman::sequences::bytes_from_model(talisman::sequences::read_model(argv[1]));
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
       return fail("the reader could not hand its result over");
     _exit(ExitCode::kSuccess);  // libraries of readers are not trusted to end cleanly either

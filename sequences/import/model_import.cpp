@@ -16,6 +16,7 @@
 #include <unistd.h>
 
 #include "sequences/files/program_folder.h"
+#include "sequences/import/scene_stream.h"
 
 extern char** environ;
 
@@ -186,9 +187,8 @@ ImportedModel import_model(const std::string& path, const ImportLimits& limits) 
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))
     throw InputError(std::filesystem::exists(path, error) ? "is not a file" : "does not exist", path);
-  const Outcome outcome = run({program_folder() + "/talisman_import", path, std::to_string(limits.seconds),
-                               std::to_string(limits.megabytes)},
-                              limits);
+  const Outcome outcome = run(
+      {importer_program(), path, std::to_string(limits.seconds), std::to_string(limits.megabytes)}, limits);
   if (const std::string what = failure(outcome, limits); !what.empty()) throw InputError(what, path);
   try {
     return model_from_bytes(outcome.bytes);

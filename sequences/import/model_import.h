@@ -2,18 +2,16 @@
 #pragma once
 
 /// Model files through assimp, in a child process (talisman_import, beside the tool): a hostile file can
-/// crash, hang or exhaust nothing but its reader. The child sends the model as a byte stream; the parent
-/// checks every length and every index again.
+/// crash, hang or exhaust nothing but its reader. The child sends the model as a byte stream
+/// (scene_stream.h); the parent checks every length and every index again.
 ///
 /// What is made of a file:
 ///   geometry   triangles with smooth normals where the file has none; points and lines are dropped
 ///   colours    linear light; glTF is linear already, other formats are taken as sRGB
 ///   PBR        base colour as it is; specular = mix(0.04, base, metallic) · (1 − roughness), Blinn-Phong
-///   exponent
-///              2 / roughness⁴ − 2, at most 1024
+///              exponent 2 / roughness⁴ − 2, at most 1024
 ///   textures   embedded, or looked for as written, beside the model, in ../textures, in any letter case and
-///   by
-///              8.3-truncated name; one that is not found is a warning and a plain colour
+///              by 8.3-truncated name; one that is not found is a warning and a plain colour
 ///   motion     the first animation, ticks → seconds, looping
 ///   lights     directional, point, spot (angles of glTF are from the axis, those of other formats of the
 ///              whole cone), ambient; if one is brighter than 1 all are divided by the brightest, for files
@@ -21,7 +19,6 @@
 ///   layers     the key "layer" of a glTF node's extras is kept as a LayerTag
 
 #include <cstdint>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -43,7 +40,8 @@ struct LayerTag {
 
 struct ImportedModel {
   layers::Scene scene;
-  std::vector<std::string> warnings;  ///< missing textures and what else could not be kept
+  std::vector<std::string> warnings;  ///< missing textures and what else the picture will lack
+  std::vector<std::string> notes;     ///< what was decided where the file leaves it open
   std::vector<LayerTag> layer_tags;
 };
 
@@ -52,21 +50,5 @@ struct ImportedModel {
 /// not-a-number positions, indices out of range). Cost: a process start (about 0.4 s, nearly all of it for
 /// loading what the image library depends on) and two copies of the scene.
 ImportedModel import_model(const std::string& path, const ImportLimits& limits = {});
-
-/// The stream between child and parent: magic, version, then every field in the order of its struct, each
-/// array behind its length. The `…_from_bytes` throw InputError on anything malformed, also on a scene with a
-/// first_defect; no length is believed before as many bytes are there.
-std::vector<std::uint8_t> bytes_from_scene(const layers::Scene& scene);
-layers::Scene scene_from_bytes(std::span<const std::uint8_t> bytes);
-std::vector<std::uint8_t> bytes_from_model(const ImportedModel& model);
-ImportedModel model_from_bytes(std::span<const std::uint8_t> bytes);
-
-/// Reads an image file into a texture (sRGB bytes, straight alpha). Throws InputError.
-layers::Texture read_texture(const std::string& path);
-
-/// The same from the bytes of an image file. `format` is its usual file extension without the dot ("png",
-/// "jpg").
-layers::Texture read_texture_from_bytes(std::span<const std::uint8_t> bytes, const std::string& name,
-                                        const std::string& format);
 
 }  // namespace talisman::sequences

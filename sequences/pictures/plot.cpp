@@ -7,8 +7,8 @@
 #include <filesystem>
 
 #include "layers/check.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/files/child_process.h"
-#include "sequences/files/image_io.h"
 
 namespace talisman::sequences {
 namespace {

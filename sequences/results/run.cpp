@@ -10,8 +10,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/files/atomic_file.h"
 #include "sequences/files/frame_writer.h"
 #include "sequences/files/line_file.h"
+#include "sequences/files/video.h"
 #include "sequences/pictures/overlay.h"
 #include "sequences/results/separate_pictures.h"
 

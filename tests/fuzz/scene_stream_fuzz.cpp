@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "sequences/import/model_import.h"
+#include "sequences/import/scene_stream.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   try {

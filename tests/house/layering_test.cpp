@@ -25,8 +25,8 @@ const std::map<std::string, std::vector<std::string>> kMayInclude = {
 };
 
 /// The rooms inside sequences/: each may include itself and those before it.
-const std::vector<std::string> kRooms = {"pipeline", "files",   "pictures",    "import",
-                                         "content",  "results", "experiments", "commands"};
+const std::vector<std::string> kRooms = {"pipeline", "files",       "pictures", "import", "content",
+                                         "results",  "experiments", "commands", "python"};
 
 struct SourceFile {
   std::string folder;
@@ -111,6 +111,26 @@ TEST(House, EigenAndCeresStayInsideWarpSources) {
     for (std::size_t i = 0; i < file.lines.size(); ++i)
       EXPECT_FALSE(std::regex_search(file.lines[i], solver)) << file.path << ":" << i + 1;
   }
+}
+
+/// Who links the libraries needs the headers of the standard library and of GLM, and no others.
+TEST(House, HeadersOfTheLibrariesIncludeOnlyGlmAndTheStandardLibrary) {
+  const std::regex include(R"re(^\s*#\s*include\s*([<"][^>"]+[>"]))re");
+  const std::regex allowed(R"re(<(glm/[a-z0-9_/]+\.hpp|[a-z_]+|[a-z]+\.h)>|"(.*/)?[a-z0-9_]+\.h")re");
+  int includes = 0;
+  for (const auto& file :
+       sources_of({"layers", "warp", "fiducials", "regulator", "chunker", "sequences/pipeline"})) {
+    if (file.path.extension() != ".h") continue;
+    for (std::size_t i = 0; i < file.lines.size(); ++i) {
+      std::smatch match;
+      if (!std::regex_search(file.lines[i], match, include)) continue;
+      ++includes;
+      const std::string what = match[1];
+      EXPECT_TRUE(std::regex_match(what, allowed)) << file.path << ":" << i + 1 << ": " << what;
+      EXPECT_NE(what, "<filesystem>") << file.path << ":" << i + 1;
+    }
+  }
+  EXPECT_GT(includes, 100) << "the scan found almost nothing: is the pattern still right?";
 }
 
 TEST(House, FilesAreShortEnoughToRead) {

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/experiments/factoring/pictures.h"
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 
 namespace talisman::sequences {

@@ -10,7 +10,7 @@
 
 #include "layers/check.h"
 #include "sequences/experiments/regulator/plots.h"
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 
 namespace talisman::sequences {

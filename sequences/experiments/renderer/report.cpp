@@ -9,7 +9,7 @@
 
 #include "sequences/experiments/renderer/plots.h"
 #include "sequences/experiments/renderer/sheets.h"
-#include "sequences/files/image_io.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 
 namespace talisman::sequences {

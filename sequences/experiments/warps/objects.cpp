@@ -13,6 +13,7 @@
 
 #include "layers/check.h"
 #include "sequences/content/asset_paths.h"
+#include "sequences/files/program_folder.h"
 #include "sequences/import/model_import.h"
 
 namespace talisman::sequences {
@@ -183,10 +184,10 @@ const ShippedObject* find_shipped(const std::string& name) {
 
 std::string file_of(const ShippedObject& object) {
   try {
-    return resolve_asset(object.asset, repository_root() + "/sequences/warps/packages");
+    return resolve_asset(object.asset, data_folder() + "/sequences/warps/packages");
   } catch (const InputError&) {
     throw InputError("object '" + std::string(object.name) + "': " + object.asset +
-                     " is not there, rule: content is fetched first, by sequences/fetch-assets warps");
+                     " is not there, rule: content is fetched first, by " + fetch_command("warps"));
   }
 }
 

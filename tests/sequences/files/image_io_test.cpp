@@ -17,7 +17,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sequences/files/atomic_file.h"
 #include "sequences/files/child_process.h"
+#include "sequences/files/video.h"
 
 namespace talisman::sequences {
 namespace {

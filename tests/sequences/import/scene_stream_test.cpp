@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/import/model_import.h"
+#include "sequences/import/scene_stream.h"
 #include "tests/sequences/temporary_folder.h"
 #include "tests/support/scenes.h"
 
