@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/sequence_file.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <limits>
 
@@ -188,6 +189,22 @@ void read_settings(YamlMap& map, Sequence& sequence) {
   }
 }
 
+/// Well-formed UTF-8 (RFC 3629): lead bytes with as many continuations as they ask for, no overlong forms.
+bool is_utf8(const std::string& text) {
+  for (std::size_t i = 0; i < text.size();) {
+    const auto lead = static_cast<unsigned char>(text[i++]);
+    const int more = lead < 0x80                   ? 0
+                     : lead >= 0xc2 && lead < 0xe0 ? 1
+                     : lead >= 0xe0 && lead < 0xf0 ? 2
+                     : lead >= 0xf0 && lead < 0xf5 ? 3
+                                                   : -1;
+    if (more < 0) return false;
+    for (int k = 0; k < more; ++k, ++i)
+      if (i >= text.size() || (static_cast<unsigned char>(text[i]) & 0xc0) != 0x80) return false;
+  }
+  return true;
+}
+
 /// A variant says `extends: FILE` and then only what is different at the top level.
 YamlMap read_with_base(const std::string& file, int depth) {
   YamlMap own = read_yaml_file(file);
@@ -201,13 +218,26 @@ YamlMap read_with_base(const std::string& file, int depth) {
 
 }  // namespace
 
+/// Results go into a folder of this name: it must not lead anywhere else.
+void read_name(YamlMap& map, std::string& name) {
+  const YamlValue* value = map.find("name");
+  if (!value) return;
+  name = value->text();
+  const bool leads_away = name.find('/') != std::string::npos || name.find("..") != std::string::npos ||
+                          name == "." || name.empty();
+  const bool printable =
+      std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  if (leads_away || !printable) value->fail("a name: no '/', no '..' and no control characters");
+  if (!is_utf8(name)) value->fail("UTF-8");
+}
+
 SequenceFile read_sequence_file(const std::string& file) {
   YamlMap map = read_with_base(file, 0);
   map.find("extends");
   SequenceFile result;
   result.settings.file = file;
   result.settings.name = std::filesystem::path(file).stem().string();
-  map.read("name", result.settings.name);
+  read_name(map, result.settings.name);
   map.texts("packages");
   read_film(map, result.settings);
   read_settings(map, result.settings);

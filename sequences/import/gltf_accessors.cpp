@@ -86,10 +86,11 @@ Layout layout_of(const Json& accessor) {
   static constexpr Shape kShapes[] = {{"SCALAR", 1, 1}, {"VEC2", 2, 1}, {"VEC3", 3, 1}, {"VEC4", 4, 1},
                                       {"MAT2", 2, 2},   {"MAT3", 3, 3}, {"MAT4", 4, 4}};
   const std::string type = text_of(accessor, "type", "?");
-  const auto* shape = std::find_if(std::begin(kShapes), std::end(kShapes),
-                                   [&](const Shape& s) { return type == s.name; });
+  const auto* shape =
+      std::find_if(std::begin(kShapes), std::end(kShapes), [&](const Shape& s) { return type == s.name; });
   if (shape == std::end(kShapes))
-    throw InputError("glTF: the type of an accessor is " + type + ", rule: SCALAR, VEC2 … VEC4 or MAT2 … MAT4");
+    throw InputError("glTF: the type of an accessor is " + type +
+                     ", rule: SCALAR, VEC2 … VEC4 or MAT2 … MAT4");
   Layout layout;
   layout.type = index_of(accessor, "componentType");
   layout.component_bytes = bytes_of_type(layout.type);
@@ -106,10 +107,11 @@ Layout layout_of(const Json& accessor) {
 void check_range(std::size_t bytes, std::size_t offset, std::size_t count, std::size_t stride,
                  std::size_t element) {
   if (count == 0) return;
-  if (offset <= bytes && element <= bytes - offset && (count - 1) <= (bytes - offset - element) / stride) return;
-  throw InputError("glTF: an accessor of " + std::to_string(count) + " elements of " + std::to_string(element) +
-                   " bytes, " + std::to_string(stride) + " apart, begins at byte " + std::to_string(offset) +
-                   ", rule: inside its view of " + std::to_string(bytes));
+  if (offset <= bytes && element <= bytes - offset && (count - 1) <= (bytes - offset - element) / stride)
+    return;
+  throw InputError("glTF: an accessor of " + std::to_string(count) + " elements of " +
+                   std::to_string(element) + " bytes, " + std::to_string(stride) + " apart, begins at byte " +
+                   std::to_string(offset) + ", rule: inside its view of " + std::to_string(bytes));
 }
 
 void read_element(const Layout& layout, const std::uint8_t* from, double* to) {

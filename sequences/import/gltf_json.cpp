@@ -18,15 +18,10 @@ namespace {
 
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 
-constexpr std::array kReadExtensions = {"KHR_materials_unlit",
-                                        "KHR_texture_transform",
-                                        "KHR_materials_emissive_strength",
-                                        "KHR_materials_specular",
-                                        "KHR_materials_ior",
-                                        "KHR_materials_pbrSpecularGlossiness",
-                                        "KHR_lights_punctual",
-                                        "KHR_mesh_quantization",
-                                        "EXT_texture_webp"};
+constexpr std::array kReadExtensions = {
+    "KHR_materials_unlit",    "KHR_texture_transform", "KHR_materials_emissive_strength",
+    "KHR_materials_specular", "KHR_materials_ior",     "KHR_materials_pbrSpecularGlossiness",
+    "KHR_lights_punctual",    "KHR_mesh_quantization", "EXT_texture_webp"};
 
 std::vector<std::uint8_t> bytes_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -137,7 +132,8 @@ std::vector<std::uint8_t> bytes_of_data_uri(const std::string& uri) {
   const std::size_t comma = uri.find(',');
   if (comma == std::string::npos) throw InputError("has a data URI without a comma");
   const std::string kBase64 = ";base64";
-  const bool encoded = comma >= kBase64.size() && uri.compare(comma - kBase64.size(), kBase64.size(), kBase64) == 0;
+  const bool encoded =
+      comma >= kBase64.size() && uri.compare(comma - kBase64.size(), kBase64.size(), kBase64) == 0;
   if (encoded) return from_base64(uri, comma + 1);
   const std::string text = percent_decoded(uri.substr(comma + 1));
   return {text.begin(), text.end()};
@@ -153,8 +149,9 @@ const std::vector<std::uint8_t>& bytes_of_buffer(GltfFile& file, int index) {
   entry->second = uri.empty() ? file.binary : bytes_of_uri(file, uri);
   const double length = number_of(buffer, "byteLength", 0);
   if (length > static_cast<double>(entry->second.size()))
-    throw InputError("glTF: buffer " + std::to_string(index) + " has " + std::to_string(entry->second.size()) +
-                     " bytes, rule: its byteLength, " + std::to_string(static_cast<long long>(length)));
+    throw InputError("glTF: buffer " + std::to_string(index) + " has " +
+                     std::to_string(entry->second.size()) + " bytes, rule: its byteLength, " +
+                     std::to_string(static_cast<long long>(length)));
   return entry->second;
 }
 
@@ -183,6 +180,17 @@ GltfFile read_gltf_file(const std::string& path) {
   check_version(file.json);
   check_required(file.json);
   return file;
+}
+
+bool is_gltf1(const std::string& path) {
+  const std::vector<std::uint8_t> bytes = bytes_of_file(path);
+  if (bytes.size() >= 12 && word_at(bytes, 0) == kGlbMagic) return word_at(bytes, 4) == 1;
+  const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  if (!json.is_object()) return false;
+  const auto asset = json.find("asset");
+  const bool said = asset != json.end() && asset->is_object() && asset->contains("version");
+  return said && (*asset)["version"].is_string() &&
+         (*asset)["version"].get<std::string>().rfind("1.", 0) == 0;
 }
 
 double number_of(const Json& object, const char* key, double otherwise) {

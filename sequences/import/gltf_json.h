@@ -32,6 +32,9 @@ struct GltfFile {
 /// `gltf_extension_is_read`. Throws InputError without the file's name.
 GltfFile read_gltf_file(const std::string& path);
 
+/// Is it a glTF 1 file, by the version of its GLB header or of its JSON?
+bool is_gltf1(const std::string& path);
+
 /// Is the extension drawn, or at least read to the letter?
 bool gltf_extension_is_read(const std::string& name);
 

@@ -5,6 +5,7 @@
 
 #include "sequences/import/gltf_scene.h"
 #include "sequences/import/picture_kind.h"
+#include "sequences/import/texture_io.h"
 #include "sequences/import/texture_search.h"
 
 namespace talisman::sequences {
@@ -94,7 +95,8 @@ GltfCoordinates coordinates_of(const Json& info) {
   coordinates.set = std::max(0, index_of(info, "texCoord"));
   const Json* transform = extension_of(info, "KHR_texture_transform");
   if (!transform) return coordinates;
-  const auto offset = numbers_of(*transform, "offset", 2, {0, 0}), scale = numbers_of(*transform, "scale", 2, {1, 1});
+  const auto offset = numbers_of(*transform, "offset", 2, {0, 0}),
+             scale = numbers_of(*transform, "scale", 2, {1, 1});
   for (int k = 0; k < 2; ++k) coordinates.offset[k] = offset[k], coordinates.scale[k] = scale[k];
   coordinates.rotation_rad = number_of(*transform, "rotation", 0);
   if (const int set = index_of(*transform, "texCoord"); set >= 0) coordinates.set = set;
@@ -150,9 +152,11 @@ class Textures {
 void set_gloss(double roughness, double metallic, const layers::vec3& dielectric, layers::Material& to) {
   roughness = std::clamp(roughness, kLeastRoughness, 1.0);
   metallic = std::clamp(metallic, 0.0, 1.0);
-  to.specular = glm::mix(dielectric, to.base_color, static_cast<float>(metallic)) * static_cast<float>(1 - roughness);
+  to.specular =
+      glm::mix(dielectric, to.base_color, static_cast<float>(metallic)) * static_cast<float>(1 - roughness);
   to.shininess = static_cast<float>(std::min(kMaxShininess, 2 / std::pow(roughness, 4.0) - 2));
-  if (to.shininess < 1) to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
+  if (to.shininess < 1)
+    to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
 }
 
 /// Reflectance at normal incidence of what is no metal: KHR_materials_ior, KHR_materials_specular.
@@ -213,7 +217,8 @@ class Reading {
   void read_metal(const Json& pbr) {
     read_base(pbr, "baseColorFactor", "baseColorTexture");
     const Json& map = object_of(pbr, "metallicRoughnessTexture");
-    if (!map.empty() && !to_.unlit) import_.lacks("metallic-roughness maps are drawn as their mean", to_.name);
+    if (!map.empty() && !to_.unlit)
+      import_.lacks("metallic-roughness maps are drawn as their mean", to_.name);
     const double roughness = number_of(pbr, "roughnessFactor", 1) * textures_.mean_of(map, 1);
     const double metallic = number_of(pbr, "metallicFactor", 1) * textures_.mean_of(map, 2);
     set_gloss(roughness, metallic, dielectric_of(from_), to_);

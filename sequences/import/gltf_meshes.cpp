@@ -14,7 +14,8 @@ namespace {
 constexpr int kTriangles = 4, kStrip = 5, kFan = 6;
 
 layers::vec3 vector_at(const Accessed& from, std::size_t i) {
-  return {static_cast<float>(from.at(i, 0)), static_cast<float>(from.at(i, 1)), static_cast<float>(from.at(i, 2))};
+  return {static_cast<float>(from.at(i, 0)), static_cast<float>(from.at(i, 1)),
+          static_cast<float>(from.at(i, 2))};
 }
 
 std::vector<layers::vec3> vectors_of(GltfImport& import, int accessor, const char* what, std::size_t count) {
@@ -56,7 +57,8 @@ std::vector<layers::vec2> coordinates(GltfImport& import, const Json& attributes
   return uvs;
 }
 
-void read_coordinates(GltfImport& import, const Json& attributes, const GltfMaterial& maps, layers::Mesh& mesh) {
+void read_coordinates(GltfImport& import, const Json& attributes, const GltfMaterial& maps,
+                      layers::Mesh& mesh) {
   const std::size_t n = mesh.positions.size();
   if (maps.has_base_map) mesh.uvs = coordinates(import, attributes, maps.base, n);
   if (!maps.has_emissive_map) return;
@@ -85,8 +87,10 @@ void read_colors(GltfImport& import, const Json& attributes, bool opaque, layers
 void read_influences(GltfImport& import, const Json& attributes, layers::Mesh& mesh) {
   const std::size_t n = mesh.positions.size();
   for (int set = 0; set < 16; ++set) {
-    const std::string joints_name = "JOINTS_" + std::to_string(set), weights_name = "WEIGHTS_" + std::to_string(set);
-    const int joints_at = index_of(attributes, joints_name.c_str()), weights_at = index_of(attributes, weights_name.c_str());
+    const std::string joints_name = "JOINTS_" + std::to_string(set),
+                      weights_name = "WEIGHTS_" + std::to_string(set);
+    const int joints_at = index_of(attributes, joints_name.c_str()),
+              weights_at = index_of(attributes, weights_name.c_str());
     if (joints_at < 0 || weights_at < 0) return;
     const Accessed joints = read_accessor(import.file, joints_at, joints_name.c_str(), 4);
     const Accessed weights = read_accessor(import.file, weights_at, weights_name.c_str(), 4);
@@ -144,7 +148,8 @@ void read_morphs(GltfImport& import, const Json& primitive, layers::Mesh& mesh) 
     if (const int at = index_of(target, "POSITION"); at >= 0)
       morph.positions = vectors_of(import, at, "POSITION of a morph target", n);
     const int at = index_of(target, "NORMAL");
-    if (at >= 0 && !mesh.normals.empty()) morph.normals = vectors_of(import, at, "NORMAL of a morph target", n);
+    if (at >= 0 && !mesh.normals.empty())
+      morph.normals = vectors_of(import, at, "NORMAL of a morph target", n);
     mesh.morphs.push_back(std::move(morph));
   }
 }
@@ -171,9 +176,11 @@ layers::Mesh read_primitive(GltfImport& import, const Json& primitive, int mater
     mesh.normals = vectors_of(import, normals, "NORMAL", n);
   const std::size_t last = import.materials.size() - 1;
   const GltfMaterial& maps = import.materials[material >= 0 ? static_cast<std::size_t>(material) : last];
-  const layers::Material& look = import.model.scene.materials[material >= 0 ? static_cast<std::size_t>(material) : last];
+  const layers::Material& look =
+      import.model.scene.materials[material >= 0 ? static_cast<std::size_t>(material) : last];
   const bool opaque = look.opacity == 1 && look.alpha_cutoff == 0 &&
-                      (material < 0 || text_of(item_of(import.file, "materials", material), "alphaMode", "OPAQUE") == "OPAQUE");
+                      (material < 0 || text_of(item_of(import.file, "materials", material), "alphaMode",
+                                               "OPAQUE") == "OPAQUE");
   read_coordinates(import, attributes, maps, mesh);
   read_colors(import, attributes, opaque, mesh);
   read_influences(import, attributes, mesh);
@@ -259,8 +266,9 @@ void import_gltf_parts(GltfImport& import, int node) {
   const std::string name = text_of(mesh, "name", "mesh " + std::to_string(index));
   layers::Scene& scene = import.model.scene;
   for (std::size_t k = 0; k < primitives.size(); ++k) {
-    const int found = import.mesh_of({index, static_cast<int>(k), node, weights},
-                                     [&] { return add_primitive(import, primitives[k], name, node, weights); });
+    const int found = import.mesh_of({index, static_cast<int>(k), node, weights}, [&] {
+      return add_primitive(import, primitives[k], name, node, weights);
+    });
     if (found < 0) continue;
     const int material = index_of(primitives[k], "material");
     layers::Part part;
@@ -286,7 +294,8 @@ void import_gltf_skins(GltfImport& import) {
         entry->second = static_cast<int>(scene.skins.size());
         scene.skins.push_back(std::move(skin));
       } else {
-        import.warn("skin " + std::to_string(index) + " has joints outside the scene; what it moves stays rigid");
+        import.warn("skin " + std::to_string(index) +
+                    " has joints outside the scene; what it moves stays rigid");
       }
     }
     scene.parts[part].skin = entry->second;

@@ -43,7 +43,8 @@ Curve read_curve(GltfImport& import, const Json& sampler, int width) {
       static_cast<std::size_t>(width) * (curve.interpolation == Interpolation::CubicSpline ? 3 : 1);
   if (curve.output.values.size() < curve.times_s.size() * per_key)
     throw InputError("glTF: an animation has " + std::to_string(curve.output.values.size()) + " values for " +
-                     std::to_string(curve.times_s.size()) + " keys, rule: " + std::to_string(per_key) + " per key");
+                     std::to_string(curve.times_s.size()) + " keys, rule: " + std::to_string(per_key) +
+                     " per key");
   return curve;
 }
 
@@ -164,11 +165,12 @@ void import_gltf_motion(GltfImport& import) {
   const std::size_t count = list_of(import.file.json, "animations").size();
   if (count > 1) {
     const std::string name = text_of(*animation, "name");
-    import.warn(std::to_string(count) + " animations; only the first" + (name.empty() ? "" : ", '" + name + "',") +
-                " is played");
+    import.warn(std::to_string(count) + " animations; only the first" +
+                (name.empty() ? "" : ", '" + name + "',") + " is played");
   }
   Tracks tracks;
-  for (const Json& channel : list_of(*animation, "channels")) read_channel(import, *animation, channel, tracks);
+  for (const Json& channel : list_of(*animation, "channels"))
+    read_channel(import, *animation, channel, tracks);
   const double end_s = end_of(tracks);
   for (auto& [node, track] : tracks.transforms) {
     track.loop = true;

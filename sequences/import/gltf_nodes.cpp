@@ -104,7 +104,8 @@ class Tree {
     if (depth > kMaxDepth) throw InputError("nodes are nested deeper than " + std::to_string(kMaxDepth));
     const Json& node = item_of(import_.file, "nodes", index);
     if (import_.nodes.contains(index))
-      throw InputError("glTF: node " + std::to_string(index) + " is in the scene twice, rule: the nodes are a tree");
+      throw InputError("glTF: node " + std::to_string(index) +
+                       " is in the scene twice, rule: the nodes are a tree");
     GltfNode& place = import_.nodes[index];
     const std::string name = name_of(import_, node, index);
     place.path = unused(above.empty() ? name : above + "/" + name);
@@ -141,7 +142,8 @@ class Tree {
     const auto given = numbers_of(node, "matrix", 16, {});
     layers::Transform outer = parts_of_transform(node), inner;
     dmat4 matrix(1.0);
-    for (std::size_t k = 0; k < given.size(); ++k) matrix[static_cast<int>(k / 4)][static_cast<int>(k % 4)] = given[k];
+    for (std::size_t k = 0; k < given.size(); ++k)
+      matrix[static_cast<int>(k / 4)][static_cast<int>(k % 4)] = given[k];
     const bool whole = given.empty() || single(matrix, outer);
     if (!whole) split(matrix, outer = {}, inner = {});
     place.outer = place.inner = push(name, parent, outer);
@@ -169,7 +171,8 @@ std::vector<int> roots_of(GltfImport& import) {
   std::vector<bool> is_child(nodes.size(), false);
   for (const Json& node : nodes)
     for (const Json& child : list_of(node, "children"))
-      if (child.is_number_unsigned() && child.get<std::size_t>() < nodes.size()) is_child[child.get<std::size_t>()] = true;
+      if (child.is_number_unsigned() && child.get<std::size_t>() < nodes.size())
+        is_child[child.get<std::size_t>()] = true;
   for (std::size_t i = 0; i < nodes.size(); ++i)
     if (!is_child[i]) roots.push_back(static_cast<int>(i));
   return roots;
@@ -258,6 +261,13 @@ void import_gltf_nodes(GltfImport& import) {
   for (const int root : roots_of(import)) tree.add(root, -1, "", 0);
 }
 
+bool is_gltf2(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (extension != ".gltf" && extension != ".glb" && extension != ".vrm") return false;
+  return !is_gltf1(path);
+}
+
 ImportedModel read_gltf(const std::string& path) {
   GltfImport import(read_gltf_file(path));
   for (const std::string& name : gltf_extensions_not_read(import.file))
@@ -267,12 +277,14 @@ ImportedModel read_gltf(const std::string& path) {
   import_gltf_nodes(import);
   import_gltf_skins(import);
   if (import.model.scene.parts.empty()) {
-    const bool other = import.lacking.contains("points are not drawn") || import.lacking.contains("lines are not drawn");
+    const bool other =
+        import.lacking.contains("points are not drawn") || import.lacking.contains("lines are not drawn");
     throw InputError(std::string("has no triangles") + (other ? ", only points or lines" : "") +
                      ", rule: a model has at least one");
   }
   import_gltf_motion(import);
-  if (const std::string defect = layers::first_defect(import.model.scene); !defect.empty()) throw InputError(defect);
+  if (const std::string defect = layers::first_defect(import.model.scene); !defect.empty())
+    throw InputError(defect);
   import_gltf_lights(import);
   for (const auto& [index, place] : std::map<int, GltfNode>(import.nodes))
     if (const int camera = index_of(item_of(import.file, "nodes", index), "camera"); camera >= 0)

@@ -45,10 +45,10 @@ struct GltfImport {
   explicit GltfImport(GltfFile from) : file(std::move(from)) {}
   GltfFile file;
   ImportedModel model;
-  std::map<int, GltfNode> nodes;  ///< by glTF index: those of the scene that is drawn
-  std::vector<GltfMaterial> materials;      ///< of the scene's materials, and as last the default one
-  std::set<int> morph_animated;             ///< glTF nodes whose weights an animation moves
-  std::vector<std::pair<int, int>> skinned_parts;           ///< part, glTF skin
+  std::map<int, GltfNode> nodes;                   ///< by glTF index: those of the scene that is drawn
+  std::vector<GltfMaterial> materials;             ///< of the scene's materials, and as last the default one
+  std::set<int> morph_animated;                    ///< glTF nodes whose weights an animation moves
+  std::vector<std::pair<int, int>> skinned_parts;  ///< part, glTF skin
   std::map<std::string, std::vector<std::string>> lacking;  ///< what is not drawn → whose
 
   /// Primitives are read once for all nodes that show them alike.
@@ -69,6 +69,9 @@ struct GltfImport {
   /// "normal maps are not drawn: 'hull', 'wing'". Without a name: the sentence alone.
   void lacks(const std::string& what, const std::string& whose = {});
 };
+
+/// Has the file an extension of glTF, and not the content of glTF 1?
+bool is_gltf2(const std::string& path);
 
 /// Reads the file. Throws InputError without the file's name.
 ImportedModel read_gltf(const std::string& path);

@@ -22,7 +22,8 @@ inline std::string picture_extension(std::span<const std::uint8_t> bytes) {
   if (begins(0, "GIF8")) return "gif";
   if (begins(0, "BM")) return "bmp";
   if (begins(0, "DDS ")) return "dds";
-  if (begins(0, std::string_view("\x49\x49\x2a\x00", 4)) || begins(0, std::string_view("\x4d\x4d\x00\x2a", 4)))
+  if (begins(0, std::string_view("\x49\x49\x2a\x00", 4)) ||
+      begins(0, std::string_view("\x4d\x4d\x00\x2a", 4)))
     return "tif";
   if (begins(0, "P6") || begins(0, "P5")) return "ppm";
   return "png";
