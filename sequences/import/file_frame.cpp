@@ -29,7 +29,8 @@ class ChangedFile : public Assimp::DefaultIOSystem {
   ChangedFile(std::string path, std::string content) : path_(std::move(path)), content_(std::move(content)) {}
   Assimp::IOStream* Open(const char* file, const char* mode = "rb") override {
     if (path_ != file) return DefaultIOSystem::Open(file, mode);
-    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content_.data()), content_.size());
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content_.data()),
+                                      content_.size());
   }
 
  private:
@@ -106,14 +107,16 @@ int metadata(const aiScene& scene, const char* key, int otherwise) {
 
 dvec3 axis(const aiScene& scene, const std::string& name, int otherwise) {
   dvec3 v(0);
-  const int index = metadata(scene, name.c_str(), otherwise), sign = metadata(scene, (name + "Sign").c_str(), 1);
+  const int index = metadata(scene, name.c_str(), otherwise),
+            sign = metadata(scene, (name + "Sign").c_str(), 1);
   v[std::clamp(index, 0, 2)] = sign < 0 ? -1 : 1;
   return v;
 }
 
 /// Rotates the file's up to +y and its front to +z.
 glm::dquat upright(const aiScene& scene) {
-  const dvec3 up = axis(scene, "UpAxis", 1), front = axis(scene, "FrontAxis", 2), right = glm::cross(up, front);
+  const dvec3 up = axis(scene, "UpAxis", 1), front = axis(scene, "FrontAxis", 2),
+              right = glm::cross(up, front);
   if (!(glm::length(right) > 0.5)) return {1, 0, 0, 0};
   return glm::normalize(glm::quat_cast(glm::transpose(glm::dmat3(right, up, front))));
 }

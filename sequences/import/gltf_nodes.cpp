@@ -3,6 +3,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include <Eigen/LU>
 #include <Eigen/SVD>
 #include <glm/geometric.hpp>
 
