@@ -4,8 +4,7 @@
 /// Numbers as bits, first bit highest: the entropy code of compressed chunks.
 ///
 ///   Exp-Golomb, order 0    n ≥ 0 as the n + 1 written in binary, behind as many zeros as follow its first
-///   bit:
-///                          0 → 1, 1 → 010, 2 → 011, 3 → 00100
+///                          bit: 0 → 1, 1 → 010, 2 → 011, 3 → 00100
 ///   sparse run             count of values that are not zero; for each of them the zeros before it, its size
 ///                          less one, and a sign bit
 ///

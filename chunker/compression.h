@@ -11,8 +11,7 @@
 /// texels, each:
 ///
 ///   alpha    lossless. Predicted from its left and upper neighbours (the median of a, b and a + b - c), the
-///            first of a block from the last of the block before; the differences modulo 256 are a sparse
-///            run.
+///            first of a block from the last of the block before; the differences modulo 256 are a sparse run.
 ///   colour   reversible YCoCg of the texel's bytes, an orthonormal 8×8 DCT in 12-bit fixed point, and
 ///
 ///              level = c / step,  step(u, v) = 2^((80 - quality)/10) · (1 + (u + v)/4) · (2 for Co and Cg)
@@ -20,8 +19,7 @@
 ///            rounded to nearest, for c other than the first (u = v = 0) a little towards 0. The first level
 ///            is the difference to that of the block before, the others are a sparse run in zig-zag order.
 ///   sparse run  how many are not zero; for each how many zeros before it, its size less one, its sign.
-///   Numbers
-///            are Exp-Golomb codes of order 0.
+///            Numbers are Exp-Golomb codes of order 0.
 ///
 /// Colours are coded *straight*: divided by alpha (in the square-root scale of the texel) where there is
 /// some, what costs least where there is none. So an antialiased edge is no edge for the transform, a decoded

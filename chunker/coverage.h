@@ -9,11 +9,10 @@
 /// (dy < 0), so of two triangles that share an edge exactly one covers it: E - 1 ≥ 0 is asked of all other
 /// edges.
 ///
-/// Samples lie on a lattice of 64 units (chunker/samples.h), so E = E₀ + 64 (A i + B j) and the sign of E is
-/// that of ⌊E₀/64⌋
-/// + A i + B j. Inside a chunk that fits 32 bits: |A| + |B| ≤ 2²³ times 127 lattice steps is less than 2³⁰,
-/// and an E₀ beyond ±2³⁰ can be clamped there without changing a sign. So eight texels are classified at
-/// once, in integers.
+/// Samples lie on a lattice of 64 units (chunker/samples.h), so E = E₀ + 64 (A i + B j), and the sign of E is
+/// that of ⌊E₀/64⌋ + A i + B j. Inside a chunk that fits 32 bits: |A| + |B| ≤ 2²³ times 127 lattice steps is
+/// less than 2³⁰, and an E₀ beyond ±2³⁰ can be clamped there without changing a sign. So eight texels are
+/// classified at once, in integers.
 
 #include <array>
 #include <cstdint>

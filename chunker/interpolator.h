@@ -12,8 +12,8 @@ inline constexpr int kMaxAttributes = 6;  ///< of a vertex, one Float4 each
 
 /// The gradient set-up of one triangle for interpolation in perspective, relative to its first corner:
 ///
-///   q₁ = b₁/w₁, q₂ = b₂/w₂, s = Σ bᵢ/wᵢ are linear on the screen (b: barycentric);  λᵢ = qᵢ/s;  a = a₀ +
-///   λ₁(a₁-a₀) + λ₂(a₂-a₀)
+///   q₁ = b₁/w₁, q₂ = b₂/w₂, s = Σ bᵢ/wᵢ    linear on the screen (b: barycentric)
+///   λᵢ = qᵢ/s;  a = a₀ + λ₁(a₁-a₀) + λ₂(a₂-a₀)
 struct Interpolator {
   float q1x, q1y, q2x, q2y;
   float s0, sx, sy;

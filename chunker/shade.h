@@ -3,10 +3,10 @@
 
 /// Which colour does a surface have, at a vertex or at a pixel?
 ///
-///   diffuse  = Σ ambient + Σ colour · max(0, N·L)                                  (Lambert)
+///   diffuse  = Σ ambient + Σ colour · max(0, N·L)                                   (Lambert)
 ///   specular = Σ colour · ks · max(0, N·H)ⁿ   where N·L > 0, H = (L + V) / |L + V|  (Blinn-Phong)
-///   colour   = α · (base · vertex colour · diffuse · texel + α_texel · (specular + emissive)),  α = opacity
-///   · α_texel
+///   colour   = α · (base · vertex colour · diffuse · texel + α_texel · (specular + emissive))
+///   α        = opacity · α_texel
 ///
 /// The texel is premultiplied, so the colour is too; its alpha is multiplied by that of the vertices, and with
 /// a cutoff it is 1 where the product is at least that and nothing elsewhere. Emission is multiplied by its own

@@ -7,8 +7,8 @@
 /// half of it (rounded down, at least 1) by an area-weighted box, so that sizes that are not powers of two do
 /// not drift. Filtering is trilinear:
 ///
-///   λ = log₂ max(|∂(u,v)/∂x|, |∂(u,v)/∂y|)  in texels of level 0;   levels ⌊λ⌋ and ⌊λ⌋ + 1 are mixed by the
-///   fraction of λ
+///   λ = log₂ max(|∂(u,v)/∂x|, |∂(u,v)/∂y|)    in texels of level 0
+///   levels ⌊λ⌋ and ⌊λ⌋ + 1 are mixed by the fraction of λ
 ///
 /// so no seam shows where the level changes. Magnified textures (λ ≤ 0) cost one bilinear sample instead of
 /// two. Coordinates repeat unless the texture says otherwise (layers::Wrap): clamped ones show the outermost

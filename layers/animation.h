@@ -8,8 +8,7 @@
 ///   Step        value i
 ///   Linear      (1 − τ) pᵢ + τ pᵢ₊₁; rotations by slerp along the shorter arc
 ///   CatmullRom  the *path* is the centripetal spline (knot distance dᵢ = |pᵢ₊₁ − pᵢ|^½: no loops or cusps
-///   between keys),
-///               the *pace* on it a monotone cubic through (tᵢ, knot i), so that velocity is continuous
+///               between keys), the *pace* on it a monotone cubic through (tᵢ, knot i), so that velocity is continuous
 ///               however unevenly the keys lie in time, and a camera that has two equal keys stands still
 ///               between them. End tangents are one-sided. Rotations are interpolated by slerp: constant rate
 ///               between keys, no overshoot.

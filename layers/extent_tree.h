@@ -33,14 +33,17 @@ struct DirectionBox {
   bool empty() const { return lo[0] > hi[0]; }
 };
 
+// Without branches: both are asked of every node that a query visits.
 inline bool overlap(const DirectionBox& a, const DirectionBox& b) {
-  return (a.lo[0] <= b.hi[0]) & (b.lo[0] <= a.hi[0]) & (a.lo[1] <= b.hi[1]) & (b.lo[1] <= a.hi[1]) &
-         (a.lo[2] <= b.hi[2]) & (b.lo[2] <= a.hi[2]);
+  int meets = 1;
+  for (int k = 0; k < 3; ++k) meets &= int{a.lo[k] <= b.hi[k]} & int{b.lo[k] <= a.hi[k]};
+  return meets != 0;
 }
 
 inline bool contains(const DirectionBox& outer, const DirectionBox& inner) {
-  return (outer.lo[0] <= inner.lo[0]) & (inner.hi[0] <= outer.hi[0]) & (outer.lo[1] <= inner.lo[1]) &
-         (inner.hi[1] <= outer.hi[1]) & (outer.lo[2] <= inner.lo[2]) & (inner.hi[2] <= outer.hi[2]);
+  int inside = 1;
+  for (int k = 0; k < 3; ++k) inside &= int{outer.lo[k] <= inner.lo[k]} & int{inner.hi[k] <= outer.hi[k]};
+  return inside != 0;
 }
 
 /// The directions from `eye` to the box lo … hi: exact intervals (each coordinate of u grows with its own

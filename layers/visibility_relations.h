@@ -8,8 +8,7 @@
 ///   what the body is expected to move in the next frames. While the extents stay within, the pairs that the
 ///   body takes part in are those it had; only when they leave, it is looked up again. How far body and eye
 ///   may move before they can leave is known too, so mostly they are not even computed.
-/// - *Answers with a term.* An exact test says by how much its bodies (and the eye) may move before the
-/// answer
+/// - *Answers with a term.* An exact test says by how much its bodies (and the eye) may move before the answer
 ///   can change: the gap to the plane that parts them, or the radius of the ball by which they overlap
 ///   (layers/convex.h). Each body sums up the largest step of its points; while the three sums of a pair stay
 ///   below the sum at the test plus that term, the answer holds.

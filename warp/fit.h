@@ -7,8 +7,8 @@
 ///   maximum norm:   minimise  maxᵢ ‖W(p̂ᵢ) - pᵢ‖              (max_px), with a certified lower bound
 ///
 /// All fits are in double, on centred and scaled points: the raw normal equations of [LS97 4.1] lose whole
-/// pixels on small sprites far from the origin [A §5]. Note that the printed K of the paper is a misprint; K
-/// = P̂ᵀ(P̂P̂ᵀ)⁻¹.
+/// pixels on small sprites far from the origin [A §5]. Note that the printed K of the paper is a misprint;
+/// K = P̂ᵀ(P̂P̂ᵀ)⁻¹.
 ///
 /// Every outcome is data: a fit never throws, never returns a non-finite number, and never silently mirrors
 /// the sprite.

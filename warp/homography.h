@@ -5,8 +5,8 @@
 ///
 /// With q = (u, v, 1) for a point then and p = (x, y) now, both normalised, and w = 1 + g u + h v:
 ///
-///   per    minimise Σ ‖A q - p w‖²        a linear system of 8 unknowns [LS97 4.2]: the residual is scaled
-///   by w per2   minimise Σ ‖A q / w - p‖²      the error on the display
+///   per    minimise Σ ‖A q - p w‖²      a linear system of 8 unknowns [LS97 4.2]: the residual is scaled by w
+///   per2   minimise Σ ‖A q / w - p‖²    the error on the display
 ///
 /// Normalisation (Hartley, on both sides): the points now are centred and scaled to a root mean square
 /// distance of √2; those then are centred, turned to their principal axes and scaled along each, which

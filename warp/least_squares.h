@@ -13,8 +13,11 @@
 ///   D = Σᵢ (pᵢ - p₀) kᵢᵀ     (2×2; Σ kᵢ = 0, so any p₀ will do)          t = p̄ - D p̂̄
 ///
 /// The other linear families have the closed forms
-///   translation  t = p̄ - p̂̄           isotropic  s = Σ (p̂ᵢ - p̂̄)·(pᵢ - p̄) / Σ ‖p̂ᵢ - p̂̄‖²           x/y scale:
-///   the same for each axis
+///
+///   translation    t = p̄ - p̂̄
+///   isotropic      s = Σ (p̂ᵢ - p̂̄)·(pᵢ - p̄) / Σ ‖p̂ᵢ - p̂̄‖²
+///   x/y scale      the same for each axis
+///
 /// The isotropic scale has no rotation: it is the paper's scaling with one factor.
 
 #include <span>

@@ -11,9 +11,8 @@
 ///
 ///   J = m (1, q_x, q_y | 1, q_x, q_y | -v q_x / E, -v q_y / E)
 ///
-///   homogeneous    r = d den - num         m = 1        v = d            linear in x, ‖r‖ = den · error in
-///   pixels post-divide    r = d - num / den       m = 1/den    v = num / den    quasiconvex where all den >
-///   0
+///   homogeneous    r = d den - num      m = 1        v = d            linear in x, ‖r‖ = den · error in pixels
+///   post-divide    r = d - num / den    m = 1/den    v = num / den    quasiconvex where all den > 0
 
 #include "warp/residual_columns.h"
 #include "warp/small_dense.h"

@@ -4,9 +4,8 @@
 /// The point pairs as the maximum-norm solvers see them: centred, the points then also whitened, one column
 /// per quantity.
 ///
-///   q = T (p̂ - ĉ)      mean 0; for affine and perspective Σ q qᵀ = n I, otherwise scaled only (see
-///   Whitening) d = (p - c) / unit  mean 0; the unit is 1 px, or a power of two px where squares of squares
-///   of d could
+///   q = T (p̂ - ĉ)       mean 0; for affine and perspective Σ q qᵀ = n I, otherwise scaled only (see Whitening)
+///   d = (p - c) / unit  mean 0; the unit is 1 px, or a power of two px where squares of squares of d could
 ///                       overflow or vanish
 ///   rᵢ = dᵢ - W̃(qᵢ)     the residual of the current iterate, units;  fᵢ = ‖rᵢ‖²
 ///   uᵢ                  scratch for the multipliers of a certificate

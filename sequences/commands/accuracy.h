@@ -13,8 +13,8 @@
 /// DIR:
 ///
 ///   solvers.csv   one line per solver and number of points
-///   solvers.svg   time against the largest error in pixels, 14 points, all families; the Pareto front is
-///   marked solvers-affine.svg, solvers-perspective.svg   time against the excess over the certified optimum
+///   solvers.svg   time against the largest error in pixels, 14 points, all families; the Pareto front is marked
+///   solvers-affine.svg, solvers-perspective.svg   time against the excess over the certified optimum
 ///
 /// All but the times is the same in every run.
 

@@ -5,12 +5,10 @@
 /// texture for each class is laid out over the ground.
 ///
 ///   height = low + (high − low) · grey, then smoothed by a Gaussian of `smooth_cells`, because the steps of
-///   8-bit
-///            heights (0.5 m and more) would show as terraces
+///            8-bit heights (0.5 m and more) would show as terraces
 ///   colour = Σ weight(class) · tile(class), in linear light; the weights are bilinear between the class
-///   image's
-///            pixels, so classes blend over one cell; a slow copy of the same tile varies the brightness,
-///            which hides its repetition
+///            image's pixels, so classes blend over one cell; a slow copy of the same tile varies the
+///            brightness, which hides its repetition
 ///
 /// Each terrain segment gets its own baked texture. It reaches two cells over the segment's border, so that
 /// filtering at the border never sees the other side of a texture that repeats. Baking takes about 0.2 µs per

@@ -13,8 +13,7 @@
 /// - two layers that occlude each other, and whatever is in one component with them: no expression exists;
 /// - components with a layer that has shade layers: the expression would have to read the base with its
 ///   shadow, highlight and reflection as one operand, which is what merging draws;
-/// - components that were merged in the last frame and have no cycle now: they are held as long as with
-/// `over`
+/// - components that were merged in the last frame and have no cycle now: they are held as long as with `over`
 ///   alone, against flicker (layers/visibility.h).
 /// One that was resolved stays resolved while it is held: it costs no rendering to be apart.
 ///

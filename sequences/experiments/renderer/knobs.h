@@ -6,10 +6,10 @@
 ///   in one pass (policy direct)
 ///     samples             1, 4, 16
 ///     merge tolerances    the default, 0
-///     texture filter      nearest, bilinear, trilinear, anisotropy 2 … 16        where a texture is called
-///     for shading             flat, Gouraud, Phong                                   … lighting shadow map
-///     128 … 2048 texels                                      … a shadow map shadow filter percentage-closer
-///     radius 0 … 3 texels                  … a shadow map
+///     texture filter      nearest, bilinear, trilinear, anisotropy 2 … 16        where a texture is called for
+///     shading             flat, Gouraud, Phong                                   … lighting
+///     shadow map          128 … 2048 texels                                      … a shadow map
+///     shadow filter       percentage-closer radius 0 … 3 texels                  … a shadow map
 ///   through sprites (policy reference)
 ///     sprite resolution   0.25 … 2 texels per pixel, all layers
 ///     shade resolution    0.125 … 1, all shade layers, and each kind alone       … a shade layer
