@@ -78,6 +78,7 @@ void add_run_options(CLI::App& command, CommandLine& line) {
   command.add_option("--threads", line.threads,
                      "worker threads; 0: all cores. The bytes do not depend on it");
   command.add_option("--progress", line.progress, "auto, bar, plain or none");
+  command.add_flag("--strict", line.strict, "what the content has and the picture lacks is an error");
 }
 
 void add_picture_options(CLI::App& command, CommandLine& line) {
@@ -95,9 +96,18 @@ void add_picture_options(CLI::App& command, CommandLine& line) {
   command.add_flag("--resume", line.resume, "continue a run that was stopped");
 }
 
+/// What the content has and the picture will lack, and what was decided about it.
+void say_what_lacks(const Sequence& sequence, bool strict) {
+  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& note : sequence.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  if (strict && !sequence.warnings.empty())
+    throw InputError(std::to_string(sequence.warnings.size()) + " warnings, rule with --strict: none",
+                     sequence.file);
+}
+
 int run_sequence(const CommandLine& line, bool plan_only) {
   const Sequence sequence = load_sequence(line.sequence);
-  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  say_what_lacks(sequence, line.strict);
   const ResolvedRun resolved = resolve(line, sequence, plan_only);
   std::unique_ptr<oneapi::tbb::global_control> threads;
   if (line.threads > 0)
@@ -129,7 +139,7 @@ int inspect_sequence(const CommandLine& line, const std::string& name, bool json
     throw InputError("inspect needs a SEQUENCE, a MODEL or --profile");
   }
   const Sequence sequence = load_sequence(name);
-  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  say_what_lacks(sequence, line.strict);
   const std::string text = order  ? order_of(sequence, line, json)
                            : json ? inspection_json(sequence)
                                   : inspection_text(sequence);
@@ -163,6 +173,7 @@ struct Commands {
     inspect->add_option("sequence", inspected,
                         "name of a sequence, path of its YAML file, or path of a model");
     inspect->add_flag("--json", json, "print JSON");
+    inspect->add_flag("--strict", line.strict, "what the content has and the picture lacks is an error");
     inspect->add_flag("--profile", profile, "print the hardware profile with the source of each number");
     inspect->add_flag("--order", order,
                       "the visibility order over time, what was merged and why, and what the sort cost");

@@ -28,6 +28,7 @@ struct CommandLine {
   bool budget_gap = false;
   int threads = 0;  ///< 0: all cores
   bool video = false, separate = false, overlay = false, quality = false, resume = false;
+  bool strict = false;  ///< warnings of the content are errors
 };
 
 struct ResolvedRun {

@@ -105,6 +105,7 @@ Sequence load_model(const std::string& path) {
       duration > 0 ? std::max(1, static_cast<int>(std::lround(duration * sequence.fps))) : kOrbitFrames;
   add_default_view(model.scene);
   std::vector<layers::LayerSpec> specs = specs_of_model(model.scene, model.layer_tags);
+  sequence.notes = std::move(model.notes);
   finish(sequence, {std::move(model.scene), {}, std::move(model.warnings)}, std::move(specs));
   if (!sequence.layers.defect.empty()) throw InputError(sequence.layers.defect, path);
   return sequence;
