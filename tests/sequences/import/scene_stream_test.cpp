@@ -33,7 +33,25 @@ ImportedModel full_model() {
   const int last = static_cast<int>(model.scene.nodes.size()) - 1;
   model.scene.tracks.push_back({last - 1, flight});
   model.scene.tracks.push_back({last, layers::SpinTrack{{1, 0, 0}, 2}});
+  layers::Mesh& mesh = model.scene.meshes[0];
+  mesh.colors.assign(mesh.positions.size(), layers::vec3(0.5f));
+  mesh.alphas.assign(mesh.positions.size(), 0.25f);
+  mesh.emissive_uvs.assign(mesh.positions.size(), layers::vec2(2, 3));
+  mesh.morphs.push_back({std::vector<layers::vec3>(mesh.positions.size(), layers::vec3(1, 2, 3)), {}});
+  model.scene.nodes.back().morph_weights = {0.75};
+  layers::MorphTrack morph;
+  morph.weights = {{{0, 1}, {0, 1}, layers::Interpolation::CubicSpline, {0, 2}, {3, 0}}};
+  morph.loop_end_s = 5;
+  model.scene.tracks.insert(model.scene.tracks.begin(), {last, morph});
+  model.scene.materials[0].emissive_texture = 0;
+  model.scene.materials[0].alpha_cutoff = 0.5f;
+  model.scene.textures[0].wrap_u = layers::Wrap::Clamp;
+  model.scene.textures[0].wrap_v = layers::Wrap::Mirror;
+  model.scene.textures[0].nearest = true;
+  model.scene.lights[1].attenuation = {1, 2, 3};
+  model.scene.lights[1].range_m = 4;
   model.warnings = {"one warning", ""};
+  model.notes = {"a note"};
   model.layer_tags = {{last, "hull"}};
   return model;
 }
@@ -71,6 +89,20 @@ TEST(SceneStream, FieldsArriveWhereTheyBelong) {
   EXPECT_EQ(back.cameras[0].near_m, scene.cameras[0].near_m);
   EXPECT_EQ(back.cameras[0].far_m, scene.cameras[0].far_m);
   EXPECT_EQ(back.lights[1].direction, scene.lights[1].direction);
+  EXPECT_EQ(back.lights[1].attenuation, layers::dvec3(1, 2, 3));
+  EXPECT_EQ(back.lights[1].range_m, 4);
+  EXPECT_EQ(back.meshes[0].emissive_uvs[0], layers::vec2(2, 3));
+  EXPECT_EQ(back.meshes[0].alphas[0], 0.25f);
+  EXPECT_EQ(back.meshes[0].morphs[0].positions[0], layers::vec3(1, 2, 3));
+  EXPECT_EQ(back.materials[0].alpha_cutoff, 0.5f);
+  EXPECT_EQ(back.textures[0].wrap_u, layers::Wrap::Clamp);
+  EXPECT_EQ(back.textures[0].wrap_v, layers::Wrap::Mirror);
+  EXPECT_TRUE(back.textures[0].nearest);
+  EXPECT_FALSE(back.textures[0].finest);
+  const auto& morph = std::get<layers::MorphTrack>(back.tracks[0].motion);
+  EXPECT_EQ(morph.weights[0].in_tangents, (std::vector<double>{0, 2}));
+  EXPECT_EQ(morph.weights[0].out_tangents, (std::vector<double>{3, 0}));
+  EXPECT_EQ(morph.loop_end_s, 5);
   const auto& flight = std::get<layers::FlightTrack>(back.tracks[back.tracks.size() - 2].motion);
   EXPECT_EQ(flight.bank_rad.interpolation, layers::Interpolation::Step);
   EXPECT_EQ(flight.position.values[1], layers::dvec3(1, 2, 3));
@@ -97,7 +129,7 @@ TEST(SceneStream, BytesTooManyAreRefused) {
 TEST(SceneStream, ForeignBytesAndOtherVersionsAreRefused) {
   auto bytes = bytes_from_scene({});
   bytes[4] ^= 1;
-  EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("version 3, rule: 2"));
+  EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("version 2, rule: 3"));
   bytes[0] ^= 1;
   EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("magic"));
 }
