@@ -38,15 +38,19 @@ inline Float4 attribute(const Interpolator& t, const Lambda& at, int index) {
   return t.a0[index] + t.d1[index] * splat(at.one) + t.d2[index] * splat(at.two);
 }
 
-/// The two screen derivatives of (u, v) in texels of level 0.
+/// The two screen derivatives of (u, v) in texels of level 0. `lane`: where u lies in its attribute, 0 or 2.
 inline TextureDerivatives texture_derivatives(const Interpolator& t, const Lambda& at, int uv,
-                                              const MipLevel& finest) {
+                                              const MipLevel& finest, int lane = 0) {
   const float one_x = (t.q1x - at.one * t.sx) * at.inverse_s, one_y = (t.q1y - at.one * t.sy) * at.inverse_s;
   const float two_x = (t.q2x - at.two * t.sx) * at.inverse_s, two_y = (t.q2y - at.two * t.sy) * at.inverse_s;
   const Float4 texels{static_cast<float>(finest.width), static_cast<float>(finest.height), 0, 0};
   const Float4 x = (t.d1[uv] * splat(one_x) + t.d2[uv] * splat(two_x)) * texels;
   const Float4 y = (t.d1[uv] * splat(one_y) + t.d2[uv] * splat(two_y)) * texels;
-  return {x, y};
+  if (lane == 0) return {x, y};
+  const Float4 size{static_cast<float>(finest.width), static_cast<float>(finest.height), 0, 0};
+  const Float4 along_x = t.d1[uv] * splat(one_x) + t.d2[uv] * splat(two_x);
+  const Float4 along_y = t.d1[uv] * splat(one_y) + t.d2[uv] * splat(two_y);
+  return {Float4{along_x[2], along_x[3], 0, 0} * size, Float4{along_y[2], along_y[3], 0, 0} * size};
 }
 
 }  // namespace talisman::chunker

@@ -36,6 +36,17 @@ int add_shadow(const ShadeInputs& inputs, std::size_t light, LightSet& set) {
   return set.shadows++;
 }
 
+LightSet::Fading fading(const layers::LightState& light) {
+  LightSet::Fading fading;
+  if (!layers::is_built(layers::Effect::LightFalloff) || !light.falls_off()) return fading;
+  fading.any = true;
+  fading.constant = static_cast<float>(light.attenuation.x);
+  fading.linear = static_cast<float>(light.attenuation.y);
+  fading.quadratic = static_cast<float>(light.attenuation.z);
+  if (light.range_m > 0) fading.per_range4 = static_cast<float>(1 / std::pow(light.range_m, 4));
+  return fading;
+}
+
 LightSet::Spot spot(const layers::LightState& light, const dvec3& eye, int shadow) {
   constexpr double kSharpest = 1e-6;  // a cone without a soft edge still has a finite slope
   const double outer = std::cos(light.outer_cone_rad), inner = std::cos(light.inner_cone_rad);
@@ -46,6 +57,7 @@ LightSet::Spot spot(const layers::LightState& light, const dvec3& eye, int shado
   result.cos_outer = static_cast<float>(outer);
   result.inverse_width = static_cast<float>(1 / std::max(inner - outer, kSharpest));
   result.shadow = shadow;
+  result.fading = fading(light);
   return result;
 }
 
@@ -70,7 +82,8 @@ LightSet light_set(const layers::SceneFrame& frame, const ShadeInputs& inputs) {
             {normalized3(float4(vec3(-light.direction))), color, add_shadow(inputs, i, set)});
         break;
       case layers::Light::Kind::Point:
-        set.point.push_back({float4(vec3(light.position - set.eye)), color, add_shadow(inputs, i, set)});
+        set.point.push_back(
+            {float4(vec3(light.position - set.eye)), color, add_shadow(inputs, i, set), fading(light)});
         break;
       case layers::Light::Kind::Spot:
         set.spot.push_back(spot(light, set.eye, add_shadow(inputs, i, set)));

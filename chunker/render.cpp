@@ -53,7 +53,7 @@ std::map<int, bool> textures_of(const layers::Scene& scene, bool filtered) {
     if (part.material < 0) continue;
     const bool coarser = filtered || scene.meshes[part.mesh].uvs.empty();
     const layers::Material& material = scene.materials[part.material];
-    for (const int texture : {material.texture, material.texture2})
+    for (const int texture : {material.texture, material.texture2, material.emissive_texture})
       if (texture >= 0 && texture < static_cast<int>(scene.textures.size()))
         used[texture] = used[texture] || coarser;
   }

@@ -19,6 +19,10 @@ const Pyramid* pyramid_of(const PreparedScene& prepared, int texture) {
   return &pyramids[texture];
 }
 
+bool all_zero(Float4 v) { return v[0] == 0 && v[1] == 0 && v[2] == 0; }
+
+Float4 unpremultiplied(Float4 texel) { return texel[3] > 0 ? texel * splat(1 / texel[3]) : splat(0); }
+
 /// T₁ for its colour, or where only coverage counts for its alpha.
 void choose_texture(const Pyramid* pyramid, bool has_uvs, bool colored, Shader& shader) {
   if (pyramid == nullptr) return;
@@ -51,6 +55,25 @@ void choose_textures(const PreparedScene& prepared, const layers::Material& mate
     choose_second_texture(second, has_uvs, clamp_unit(blend.x), clamp_unit(blend.y), shader);
   else if (term == ShadeTerm::Texture2)
     choose_second_texture(second, has_uvs, 0, 1, shader);
+}
+
+/// What the alpha of the texture and of the vertices does besides being multiplied.
+void choose_alpha(const layers::Material& material, const layers::Mesh& mesh, Shader& shader) {
+  if (!layers::is_built(layers::Effect::Translucency)) return;
+  shader.alpha_cutoff = clamp_unit(material.alpha_cutoff);
+  shader.vertex_alpha = !mesh.alphas.empty() && !mesh.colors.empty();
+  shader.opaque = shader.opaque && !shader.vertex_alpha;
+}
+
+void choose_emission(const PreparedScene& prepared, const layers::Material& material,
+                     const layers::Mesh& mesh, Shader& shader) {
+  if constexpr (!layers::is_built(layers::Effect::EmissiveMap)) return;
+  const Pyramid* pyramid = pyramid_of(prepared, material.emissive_texture);
+  if (pyramid == nullptr || all_zero(shader.emissive)) return;
+  if (mesh.uvs.empty() && mesh.emissive_uvs.empty())
+    shader.emissive *= unpremultiplied(pyramid->mean());
+  else
+    shader.emissive_map = pyramid;
 }
 
 /// Does the part show anything in this term, apart from hiding what is behind it?
@@ -101,7 +124,7 @@ AttributeLayout choose_layout(const Shader& shader, bool vertex_colors) {
   AttributeLayout layout;
   const auto next = [&layout] { return layout.count++; };
   if (shader.textured()) layout.uv = next();
-  if (vertex_colors || (shader.lit && !shader.per_pixel)) layout.color = next();
+  if (vertex_colors || shader.vertex_alpha || (shader.lit && !shader.per_pixel)) layout.color = next();
   if (shader.has_specular && !shader.per_pixel) layout.specular = next();
   if (shader.per_pixel) layout.normal = next();
   if (shader.shadowed || (shader.per_pixel && (shader.has_specular || !shader.lights->local_empty())))
@@ -129,29 +152,49 @@ void add_light(const Shader& shader, Float4 normal, Float4 to_eye, Float4 to_lig
   sum.specular += specular;
 }
 
+float fading_at(const LightSet::Fading& fading, Float4 source, Float4 position) {
+  const Float4 apart = source - position;
+  return faded(fading, dot3(apart, apart));
+}
+
+void add_point(const Shader& shader, Float4 normal, Float4 to_eye, Float4 position,
+               const LightSet::Point& source, Lighting& sum, Shadowing& shadowing) {
+  Float4 color = source.color;
+  if (layers::is_built(layers::Effect::LightFalloff) && source.fading.any)
+    color *= splat(fading_at(source.fading, source.position, position));
+  add_light(shader, normal, to_eye, normalized3(source.position - position), color, source.shadow, sum,
+            shadowing);
+}
+
 void add_spot(const Shader& shader, Float4 normal, Float4 to_eye, Float4 position,
               const LightSet::Spot& source, Lighting& sum, Shadowing& shadowing) {
   const Float4 to_light = normalized3(source.position - position);
   const float t = clamp_unit((-dot3(source.axis, to_light) - source.cos_outer) * source.inverse_width);
   const float falloff = (t * t) * (3 - 2 * t);
-  add_light(shader, normal, to_eye, to_light, source.color * splat(falloff), source.shadow, sum, shadowing);
+  Float4 color = source.color * splat(falloff);
+  if (layers::is_built(layers::Effect::LightFalloff) && source.fading.any)
+    color *= splat(fading_at(source.fading, source.position, position));
+  add_light(shader, normal, to_eye, to_light, color, source.shadow, sum, shadowing);
 }
 
+/// `lane`: of the first of the two coordinates in their attribute.
 Float4 look_up(const Shader& shader, const Pyramid& pyramid, const Interpolator& t, const Lambda& at,
-               int& samples) {
+               int& samples, int lane = 0) {
   const int uv = shader.layout.uv;
   const Float4 coordinate = attribute(t, at, uv);
-  const float u = coordinate[0], v = coordinate[1];
+  const float u = coordinate[lane], v = coordinate[lane + 1];
   const MipLevel& finest = pyramid.levels[0];
-  if (shader.mipmaps && shader.filter == TextureFilter::Trilinear) {
-    const TextureDerivatives derivatives = texture_derivatives(t, at, uv, finest);
+  if (shader.mipmaps && shader.filter == TextureFilter::Trilinear && !pyramid.finest) {
+    const TextureDerivatives derivatives = texture_derivatives(t, at, uv, finest, lane);
+    if (pyramid.nearest && !(footprint_of(derivatives) > 1)) return ++samples, nearest(finest, u, v);
     if (shader.max_anisotropy > 1)
       return anisotropic(pyramid, u, v, derivatives, shader.max_anisotropy, samples);
     ++samples;
     return trilinear(pyramid, u, v, footprint_of(derivatives));
   }
   ++samples;
-  return shader.filter == TextureFilter::Nearest ? nearest(finest, u, v) : bilinear(finest, u, v);
+  return shader.filter == TextureFilter::Nearest || pyramid.nearest ? nearest(finest, u, v)
+                                                                    : bilinear(finest, u, v);
 }
 
 /// Shares of each map's light in `whole`.
@@ -206,6 +249,7 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
   shader.opaque = shader.opacity == 1;
   choose_textures(prepared, material, !mesh.uvs.empty(), inputs.term,
                   own.texture_blend.value_or(material.texture_blend), shader);
+  choose_alpha(material, mesh, shader);
   choose_reflection(material, inputs.term, own.reflection, shader);
   const bool shown = contributes(shader, material, inputs.term);
   const bool colored = shown && inputs.term != ShadeTerm::Shadow && inputs.term != ShadeTerm::Specular &&
@@ -214,6 +258,7 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
   if (shown && !material.unlit)
     choose_lighting(material, !mesh.normals.empty(), options, inputs.term, shader);
   if (!colored) shader.emissive = splat(0);
+  choose_emission(prepared, material, mesh, shader);
   shader.layout = choose_layout(shader, colored && !mesh.colors.empty());
   TALISMAN_CHECK_LE(shader.layout.count, kMaxAttributes);
   return shader;
@@ -230,8 +275,7 @@ Lighting light(const Shader& shader, Float4 normal, Float4 position, Shadowing& 
   for (const auto& source : shader.lights->directional)
     add_light(shader, normal, to_eye, source.to_light, source.color, source.shadow, sum, shadowing);
   for (const auto& source : shader.lights->point)
-    add_light(shader, normal, to_eye, normalized3(source.position - position), source.color, source.shadow,
-              sum, shadowing);
+    add_point(shader, normal, to_eye, position, source, sum, shadowing);
   for (const auto& source : shader.lights->spot)
     add_spot(shader, normal, to_eye, position, source, sum, shadowing);
   return sum;
@@ -250,6 +294,7 @@ void write_attributes(const Shader& shader, const ShadePoint& point, Float4* att
     if (layout.specular_share >= 0)
       attributes[layout.specular_share] = shares(shadowing.specular, luminance(lighting.specular));
   }
+  color[3] = point.vertex_color[3];
   if (layout.color >= 0) attributes[layout.color] = color;
   if (layout.normal >= 0) attributes[layout.normal] = point.normal;
   if (layout.position >= 0) attributes[layout.position] = point.position;
@@ -274,9 +319,21 @@ Float4 reflection_at(const ReflectionLookup& lookup, const Interpolator& t, floa
   return mix(mix(texel(0, 0), texel(1, 0), across), mix(texel(0, 1), texel(1, 1), across), down);
 }
 
+/// `texel` with the alpha of the vertices, and cut where there is a cutoff.
+Float4 with_alpha(const Shader& shader, const Interpolator& t, const Lambda& at, Float4 texel) {
+  if (shader.vertex_alpha) texel *= splat(attribute(t, at, shader.layout.color)[3]);
+  if (!(shader.alpha_cutoff > 0)) return texel;
+  return texel[3] >= shader.alpha_cutoff ? texel * splat(1 / texel[3]) : splat(0);
+}
+
+Float4 emission_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples) {
+  if (shader.emissive_map == nullptr) return splat(1);
+  return unpremultiplied(look_up(shader, *shader.emissive_map, t, at, samples, 2));
+}
+
 Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples) {
-  const Float4 first =
-      shader.pyramid != nullptr ? look_up(shader, *shader.pyramid, t, at, samples) : shader.texel;
+  Float4 first = shader.pyramid != nullptr ? look_up(shader, *shader.pyramid, t, at, samples) : shader.texel;
+  if (shader.vertex_alpha || shader.alpha_cutoff > 0) first = with_alpha(shader, t, at, first);
   if (!shader.two_textures) return first;
   const Float4 second =
       shader.pyramid2 != nullptr ? look_up(shader, *shader.pyramid2, t, at, samples) : shader.texel2;
@@ -289,9 +346,10 @@ Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy) {
   const Lambda at = lambda_at(t, dx, dy);
   int samples = 0;
   const Float4 texel = texel_at(shader, t, at, samples);
-  const Float4 opacity = splat(shader.opacity);
+  const Float4 opacity = splat(shader.opacity), emission = emission_at(shader, t, at, samples);
   if (!shader.extended())
-    return combined<Terms{}>(shader, texel, lighting_at(shader, t, at, splat(1)), splat(0)) * opacity;
+    return combined<Terms{}>(shader, texel, lighting_at(shader, t, at, splat(1)), splat(0), emission) *
+           opacity;
   const Float4 visibility =
       shader.shadowed ? visibility_at(*shader.lights, attribute(t, at, shader.layout.position)) : splat(1);
   const Float4 reflection =
@@ -299,7 +357,9 @@ Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy) {
   const Lighting lighting = lighting_at(shader, t, at, visibility);
   if (shader.shadow_term)
     return combined<Terms{.shadow_alone = true}>(shader, texel, lighting, reflection) * opacity;
-  return combined<Terms{.shadowed = true, .reflecting = true}>(shader, texel, lighting, reflection) * opacity;
+  return combined<Terms{.shadowed = true, .reflecting = true}>(shader, texel, lighting, reflection,
+                                                               emission) *
+         opacity;
 }
 
 void finish_term(ShadeTerm term, std::span<Float4> texels) {

@@ -8,7 +8,9 @@
 ///   colour   = α · (base · vertex colour · diffuse · texel + α_texel · (specular + emissive))
 ///   α        = opacity · α_texel
 ///
-/// The texel is premultiplied, so the colour is too. Lights do not fall off with distance; a spot's colour is
+/// The texel is premultiplied, so the colour is too; its alpha is multiplied by that of the vertices, and with
+/// a cutoff it is 1 where the product is at least that and nothing elsewhere. Emission is multiplied by its own
+/// texture. A light that fades is scaled by layers::falloff of its distance; a spot's colour is
 /// scaled by t²(3 - 2t), t = (cos θ - cos outer) / (cos inner - cos outer) clamped to 0 … 1. Unlit surfaces
 /// have diffuse = 1 and nothing else. Values above 1 are kept until a texel is encoded.
 ///
@@ -54,10 +56,16 @@ struct LightSet {
     Float4 color;
     int shadow = -1;  ///< index of its map among `shadow_maps`; -1: it casts no shadow
   };
+  /// As Light::attenuation and 1 / range⁴.
+  struct Fading {
+    float constant = 1, linear = 0, quadratic = 0, per_range4 = 0;
+    bool any = false;
+  };
   struct Point {
     Float4 position;
     Float4 color;
     int shadow = -1;
+    Fading fading{};
   };
   struct Spot {
     Float4 position;
@@ -65,6 +73,7 @@ struct LightSet {
     Float4 axis;  ///< the way the light travels, unit length
     float cos_outer = 0, inverse_width = 1;
     int shadow = -1;
+    Fading fading{};
   };
   Float4 ambient{0, 0, 0, 0};
   std::vector<Directional> directional;
@@ -89,12 +98,13 @@ struct ReflectionLookup {
 
 /// Vertex attributes take one Float4 each; -1: not carried.
 struct AttributeLayout {
-  int uv = -1;
-  int color = -1;     ///< base · vertex colour (Phong), or base · vertex colour · diffuse (Flat, Gouraud)
-  int specular = -1;  ///< Flat, Gouraud
-  int normal = -1;    ///< Phong
-  int position = -1;  ///< Phong, relative to the eye; all shadings where shadows are looked up
-  int share = -1;     ///< Flat, Gouraud with shadows: shares of diffuse light, one channel per map
+  int uv = -1;  ///< and in the last two lanes the coordinates of the emissive texture
+  int color =
+      -1;  ///< vertex alpha in the last lane, base · vertex colour (Phong), or base · vertex colour · diffuse (Flat, Gouraud)
+  int specular = -1;        ///< Flat, Gouraud
+  int normal = -1;          ///< Phong
+  int position = -1;        ///< Phong, relative to the eye; all shadings where shadows are looked up
+  int share = -1;           ///< Flat, Gouraud with shadows: shares of diffuse light, one channel per map
   int specular_share = -1;  ///< the same of the highlights
   int count = 0;
 };
@@ -117,6 +127,9 @@ struct Shader {
   Float4 base{1, 1, 1, 1};
   Float4 specular{0, 0, 0, 0};
   Float4 emissive{0, 0, 0, 0};
+  Of<EmissiveMap, const Pyramid*> emissive_map;  ///< null: `emissive` everywhere
+  Of<Translucency, float> alpha_cutoff;          ///< 0: none
+  Of<Translucency, bool> vertex_alpha;
   float shininess = 0;
   Of<Translucency, float, 1.0f> opacity;
   Of<MipFilter, bool> mipmaps;
@@ -131,13 +144,16 @@ struct Shader {
   int max_anisotropy = 1;
   /// Texels are looked up point by point: what only some scenes ask for is not worth lanes.
   bool scalar_texels() const {
-    return two_textures || max_anisotropy > 1 || filter == TextureFilter::Nearest;
+    return two_textures || max_anisotropy > 1 || filter == TextureFilter::Nearest ||
+           emissive_map != nullptr || alpha_cutoff > 0 || vertex_alpha ||
+           (pyramid != nullptr && (pyramid->nearest || pyramid->finest));
   }
-  bool textured() const { return pyramid != nullptr || pyramid2 != nullptr; }
+  bool textured() const { return pyramid != nullptr || pyramid2 != nullptr || emissive_map != nullptr; }
   bool extended() const { return shadowed || reflection != nullptr; }
   /// The texel is 1 at every point: there is nothing to multiply with.
   bool plain() const {
-    return !layers::is_built(Texture) || (!textured() && !two_textures && all_ones(texel));
+    return (!layers::is_built(Texture) || (!textured() && !two_textures && all_ones(texel))) &&
+           emissive_map == nullptr && !vertex_alpha;
   }
 };
 
@@ -203,14 +219,15 @@ struct Terms {
 
 /// The formulas on top without the opacity. A term that is not there costs nothing.
 template <Terms kTerms>
-inline Float4 combined(const Shader& shader, Float4 texel, const Lighting& lighting, Float4 reflection) {
-  const Float4 alpha = splat(texel[3]);
+inline Float4 combined(const Shader& shader, Float4 texel, const Lighting& lighting, Float4 reflection,
+                       Float4 emission = splat(1)) {
+  const Float4 alpha = splat(texel[3]), emissive = shader.emissive * emission;
   if constexpr (kTerms.shadow_alone) return Float4{(1 - lighting.shadow) * texel[3], 0, 0, texel[3]};
   Float4 color = lighting.diffuse * texel;
   if constexpr (!kTerms.extended()) {
-    color += (kTerms.specular ? lighting.specular + shader.emissive : shader.emissive) * alpha;
+    color += (kTerms.specular ? lighting.specular + emissive : emissive) * alpha;
   } else {
-    color += shader.emissive * alpha;
+    color += emissive * alpha;
     if constexpr (kTerms.shadowed) color *= splat(lighting.shadow);
     Float4 added = lighting.specular;
     if constexpr (kTerms.reflecting) added += reflection * splat(shader.reflectivity);
@@ -228,6 +245,17 @@ Float4 reflection_at(const ReflectionLookup& lookup, const Interpolator& t, floa
 
 /// The texel at a point; `samples` is increased by the filtered look-ups it took.
 Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples);
+
+/// The emissive texture at a point, not premultiplied; 1 where there is none.
+Float4 emission_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples);
+
+/// What a fading light is scaled by at a squared distance.
+inline float faded(const LightSet::Fading& fading, float squared_m) {
+  const float distance = std::sqrt(squared_m);
+  const float below = fading.constant + distance * (fading.linear + distance * fading.quadratic);
+  const float in_range = 1 - squared_m * squared_m * fading.per_range4;
+  return (in_range > 0 ? in_range : 0.0f) / (below > 1e-12f ? below : 1e-12f);
+}
 
 /// Lighting of Flat and Gouraud shading at a point: interpolated. `visibility` counts for shadowed shaders.
 template <bool kSpecular, bool kShadowed>

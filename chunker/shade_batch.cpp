@@ -65,7 +65,12 @@ int combine(const Shader& shader, const Interpolator& t, const ShadeBlock& block
     Float4 reflection = splat(0);
     if constexpr (kTerms.reflecting)
       reflection = reflection_at(*shader.reflection, t, block.dx[i], block.dy[i]);
-    color[i] = combined<kTerms>(shader, texel, lighting, reflection);
+    if constexpr (kTexels == Texels::Looked && layers::is_built(layers::Effect::EmissiveMap)) {
+      const Float4 emission = emission_at(shader, t, lambda_at(t, block.dx[i], block.dy[i]), samples);
+      color[i] = combined<kTerms>(shader, texel, lighting, reflection, emission);
+    } else {
+      color[i] = combined<kTerms>(shader, texel, lighting, reflection);
+    }
   }
   return samples;
 }

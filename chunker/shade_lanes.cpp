@@ -105,10 +105,37 @@ HWY_INLINE Taps taps(Vec coordinate, IntVec size) {
   return {first, second, hn::Sub(x, hn::ConvertTo(d, below))};
 }
 
-HWY_INLINE void store_taps(Vec u, Vec v, IntVec width, IntVec height, BlockTaps& out, int i) {
+/// bordered_tap() in lanes.
+HWY_INLINE Taps bordered_taps(Vec coordinate, IntVec size, layers::Wrap wrap) {
   const Floats d;
   const Ints di;
-  const Taps x = taps(u, width), y = taps(v, height);
+  Vec inside = clamped(coordinate);
+  if (wrap == layers::Wrap::Mirror) {
+    const Vec half = hn::Mul(coordinate, set(0.5f));
+    const Vec there_and_back = hn::Mul(set(2), hn::Sub(half, hn::ConvertTo(d, floor_to_int(half))));
+    const auto back = hn::Gt(there_and_back, set(1));
+    inside = hn::IfThenElse(back, hn::Sub(set(2), there_and_back), there_and_back);
+  }
+  const Vec x = hn::Sub(hn::Mul(inside, hn::ConvertTo(d, size)), set(0.5f));
+  const IntVec below = floor_to_int(x), one = hn::Set(di, 1);
+  return {hn::Max(below, hn::Zero(di)), hn::Min(hn::Add(below, one), hn::Sub(size, one)),
+          hn::Sub(x, hn::ConvertTo(d, below))};
+}
+
+/// `kWraps`: the texture does not repeat along both axes.
+template <bool kWraps>
+HWY_INLINE Taps taps_of(Vec coordinate, IntVec size, [[maybe_unused]] layers::Wrap wrap) {
+  if constexpr (kWraps)
+    if (wrap != layers::Wrap::Repeat) return bordered_taps(coordinate, size, wrap);
+  return taps(coordinate, size);
+}
+
+template <bool kWraps>
+HWY_INLINE void store_taps(const MipLevel& finest, Vec u, Vec v, IntVec width, IntVec height, BlockTaps& out,
+                           int i) {
+  const Floats d;
+  const Ints di;
+  const Taps x = taps_of<kWraps>(u, width, finest.wrap_u), y = taps_of<kWraps>(v, height, finest.wrap_v);
   const IntVec upper = hn::Mul(y.first, width), lower = hn::Mul(y.second, width);
   hn::Store(hn::Add(upper, x.first), di, &out.texel[0][i]);
   hn::Store(hn::Add(upper, x.second), di, &out.texel[1][i]);
@@ -130,15 +157,16 @@ HWY_INLINE Vec log2_of(Vec x) {
 }
 
 /// The taps of trilinear(): magnified points need one level, and where all are, no table is looked at.
+template <bool kWraps>
 HWY_INLINE void choose_taps(const Pyramid& pyramid, Vec u, Vec v, Vec footprint, ShadeBlock& block, int i) {
   const Floats d;
   const Ints di;
   const auto minified = hn::Gt(footprint, set(1));
+  const MipLevel& finest = pyramid.levels[0];
   if (hn::AllFalse(d, minified)) {
     hn::Store(hn::Zero(di), di, &block.level[i]);
     hn::Store(set(0), d, &block.level_share[i]);
-    const MipLevel& finest = pyramid.levels[0];
-    store_taps(u, v, hn::Set(di, finest.width), hn::Set(di, finest.height), block.fine, i);
+    store_taps<kWraps>(finest, u, v, hn::Set(di, finest.width), hn::Set(di, finest.height), block.fine, i);
     return;
   }
   const Vec last = set(static_cast<float>(pyramid.levels.size() - 1));
@@ -149,14 +177,16 @@ HWY_INLINE void choose_taps(const Pyramid& pyramid, Vec u, Vec v, Vec footprint,
   hn::Store(level, di, &block.level[i]);
   hn::Store(hn::Sub(lambda, hn::ConvertTo(d, level)), d, &block.level_share[i]);
   const std::int32_t *widths = pyramid.widths.data(), *heights = pyramid.heights.data();
-  store_taps(u, v, hn::GatherIndex(di, widths, level), hn::GatherIndex(di, heights, level), block.fine, i);
-  store_taps(u, v, hn::GatherIndex(di, widths, next), hn::GatherIndex(di, heights, next), block.coarse, i);
+  store_taps<kWraps>(finest, u, v, hn::GatherIndex(di, widths, level), hn::GatherIndex(di, heights, level),
+                     block.fine, i);
+  store_taps<kWraps>(finest, u, v, hn::GatherIndex(di, widths, next), hn::GatherIndex(di, heights, next),
+                     block.coarse, i);
 }
 
 /// What is looked up besides λ.
 enum class Footprint { None, Finest, Level };
 
-template <Footprint kFootprint>
+template <Footprint kFootprint, bool kWraps = false>
 HWY_INLINE void interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   const Floats d;
   [[maybe_unused]] const int uv = shader.layout.uv;
@@ -173,11 +203,11 @@ HWY_INLINE void interpolate(const Shader& shader, const Interpolator& t, ShadeBl
     const Vec u = channel(t, uv, 0, one, two), v = channel(t, uv, 1, one, two);
     if constexpr (kFootprint == Footprint::Finest) {
       const Ints di;
-      store_taps(u, v, hn::Set(di, finest.width), hn::Set(di, finest.height), block.fine, i);
+      store_taps<kWraps>(finest, u, v, hn::Set(di, finest.width), hn::Set(di, finest.height), block.fine, i);
     } else {
       const Vec x = squared_derivative(t, uv, finest, one, two, r, t.q1x, t.q2x, t.sx);
       const Vec y = squared_derivative(t, uv, finest, one, two, r, t.q1y, t.q2y, t.sy);
-      choose_taps(*shader.pyramid, u, v, hn::IfThenElse(hn::Lt(x, y), y, x), block, i);
+      choose_taps<kWraps>(*shader.pyramid, u, v, hn::IfThenElse(hn::Lt(x, y), y, x), block, i);
     }
   }
 }
@@ -192,6 +222,16 @@ void InterpolateBilinear([[maybe_unused]] const Shader& shader, [[maybe_unused]]
 void InterpolateTrilinear([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
                           [[maybe_unused]] ShadeBlock& block) {
   if constexpr (layers::is_built(layers::Effect::Texture)) interpolate<Footprint::Level>(shader, t, block);
+}
+
+void InterpolateWrapped([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                        [[maybe_unused]] ShadeBlock& block) {
+  if constexpr (layers::is_built(layers::Effect::Texture)) {
+    if (shader.mipmaps)
+      interpolate<Footprint::Level, true>(shader, t, block);
+    else
+      interpolate<Footprint::Finest, true>(shader, t, block);
+  }
 }
 
 /// The Phong lobe lane by lane: it needs more precision than a float has.
@@ -261,6 +301,19 @@ HWY_INLINE Vec3 spot_color(const LightSet::Spot& source, const Vec3& to_light) {
   return scaled(set3(source.color), falloff);
 }
 
+/// faded() in lanes, times the colour.
+HWY_INLINE Vec3 faded_color(const LightSet::Fading& fading, const Vec3& apart, const Vec3& color) {
+  if (!layers::is_built(layers::Effect::LightFalloff) || !fading.any) return color;
+  const Vec squared = dot(apart, apart), distance = hn::Sqrt(squared);
+  const Vec slope = hn::Add(set(fading.linear), hn::Mul(distance, set(fading.quadratic)));
+  const Vec below = hn::Add(set(fading.constant), hn::Mul(distance, slope));
+  const Vec in_range = hn::Sub(set(1), hn::Mul(hn::Mul(squared, squared), set(fading.per_range4)));
+  const Vec least = set(1e-12f);
+  const Vec factor = hn::Div(hn::IfThenElseZero(hn::Gt(in_range, set(0)), in_range),
+                             hn::IfThenElse(hn::Gt(below, least), below, least));
+  return scaled(color, factor);
+}
+
 /// shadow_product() of the lights' shares.
 HWY_INLINE void store_shadow(const LightSet& lights, const Lit& lit, const ShadowRows& rows,
                              ShadeBlock& block) {
@@ -299,12 +352,16 @@ HWY_INLINE void light_points(const Shader& shader, const Interpolator& t, ShadeB
     for (const auto& source : shader.lights->directional)
       add_light<kShadowed, kSpecular>(shader, normal, to_eye, set3(source.to_light), set3(source.color),
                                       source.shadow, lit, rows);
-    for (const auto& source : shader.lights->point)
-      add_light<kShadowed, kSpecular>(shader, normal, to_eye, unit(minus(set3(source.position), position)),
-                                      set3(source.color), source.shadow, lit, rows);
+    for (const auto& source : shader.lights->point) {
+      const Vec3 apart = minus(set3(source.position), position);
+      add_light<kShadowed, kSpecular>(shader, normal, to_eye, unit(apart),
+                                      faded_color(source.fading, apart, set3(source.color)), source.shadow,
+                                      lit, rows);
+    }
     for (const auto& source : shader.lights->spot) {
-      const Vec3 to_light = unit(minus(set3(source.position), position));
-      add_light<kShadowed, kSpecular>(shader, normal, to_eye, to_light, spot_color(source, to_light),
+      const Vec3 apart = minus(set3(source.position), position), to_light = unit(apart);
+      add_light<kShadowed, kSpecular>(shader, normal, to_eye, to_light,
+                                      faded_color(source.fading, apart, spot_color(source, to_light)),
                                       source.shadow, lit, rows);
     }
     store3(lit.diffuse, block.diffuse, i);
@@ -335,13 +392,17 @@ namespace talisman::chunker {
 HWY_EXPORT(Interpolate);
 HWY_EXPORT(InterpolateBilinear);
 HWY_EXPORT(InterpolateTrilinear);
+HWY_EXPORT(InterpolateWrapped);
 HWY_EXPORT(LightPoints);
 HWY_EXPORT(LightShinyPoints);
 HWY_EXPORT(LightShadowedPoints);
 HWY_EXPORT(LightShadowedShinyPoints);
 
 void interpolate_block(const Shader& shader, const Interpolator& t, Texels texels, ShadeBlock& block) {
-  if (texels == Texels::Trilinear)
+  const bool fetched = texels == Texels::Trilinear || texels == Texels::Bilinear;
+  if (fetched && shader.pyramid->wraps())
+    HWY_DYNAMIC_DISPATCH(InterpolateWrapped)(shader, t, block);
+  else if (texels == Texels::Trilinear)
     HWY_DYNAMIC_DISPATCH(InterpolateTrilinear)(shader, t, block);
   else if (texels == Texels::Bilinear)
     HWY_DYNAMIC_DISPATCH(InterpolateBilinear)(shader, t, block);

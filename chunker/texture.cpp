@@ -7,7 +7,7 @@ namespace talisman::chunker {
 namespace {
 
 MipLevel decode_texels(const layers::Texture& texture) {
-  MipLevel level{texture.width, texture.height, {}};
+  MipLevel level{texture.width, texture.height, {}, texture.wrap_u, texture.wrap_v};
   level.texels.resize(static_cast<std::size_t>(texture.width) * texture.height);
   const std::uint8_t* byte = texture.rgba.data();
   for (Float4& texel : level.texels) {
@@ -52,7 +52,7 @@ Float4 box_sum(const Float4* texels, std::size_t stride, const Box& box) {
 }
 
 MipLevel half_of(const MipLevel& fine) {
-  MipLevel coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}};
+  MipLevel coarse{std::max(1, fine.width / 2), std::max(1, fine.height / 2), {}, fine.wrap_u, fine.wrap_v};
   const auto columns = boxes(fine.width, coarse.width), rows = boxes(fine.height, coarse.height);
   std::vector<Float4> narrow(static_cast<std::size_t>(coarse.width) * fine.height);
   for (int y = 0; y < fine.height; ++y)
@@ -114,6 +114,8 @@ Pyramid build_pyramid(const layers::Texture& texture, bool coarser) {
   Pyramid pyramid;
   if (texture.width <= 0 || texture.height <= 0) return pyramid;
   if (texture.rgba.size() < static_cast<std::size_t>(texture.width) * texture.height * 4) return pyramid;
+  pyramid.nearest = texture.nearest;
+  pyramid.finest = texture.finest;
   pyramid.levels.push_back(decode_texels(texture));
   const auto& finest = pyramid.levels[0].texels;
   pyramid.opaque = std::all_of(finest.begin(), finest.end(), [](const Float4& t) { return t[3] == 1; });

@@ -11,7 +11,8 @@
 ///   levels ⌊λ⌋ and ⌊λ⌋ + 1 are mixed by the fraction of λ
 ///
 /// so no seam shows where the level changes. Magnified textures (λ ≤ 0) cost one bilinear sample instead of
-/// two. Coordinates repeat; texel (i, j) has its centre at ((i + 0.5) / width, (j + 0.5) / height).
+/// two. Coordinates repeat unless the texture says otherwise (layers::Wrap): clamped ones show the outermost
+/// texels' centres, mirrored ones turn over at each whole number. Texel (i, j) has its centre at ((i + 0.5) / width, (j + 0.5) / height).
 
 #include <algorithm>
 #include <cstdint>
@@ -26,12 +27,18 @@ namespace talisman::chunker {
 struct MipLevel {
   int width = 0, height = 0;
   std::vector<Float4> texels;  ///< row by row
+  layers::Wrap wrap_u = layers::Wrap::Repeat, wrap_v = layers::Wrap::Repeat;
 };
 
 struct Pyramid {
   std::vector<MipLevel> levels;               ///< empty: no texture
   std::vector<std::int32_t> widths, heights;  ///< of the levels, for look-ups in lanes
   bool opaque = true;                         ///< alpha is 1 in every texel of every level
+  bool nearest = false;                       ///< as Texture::nearest
+  bool finest = false;                        ///< as Texture::finest
+  bool wraps() const {
+    return levels[0].wrap_u != layers::Wrap::Repeat || levels[0].wrap_v != layers::Wrap::Repeat;
+  }
   bool empty() const { return levels.empty(); }
   std::int64_t bytes() const;
   /// The mean of the whole texture: what a surface without texture coordinates gets.
@@ -59,7 +66,23 @@ struct Tap {
   float share;
 };
 
-inline Tap tap(float coordinate, int size) {
+/// A coordinate for a texture that does not repeat: inside 0 … 1.
+inline float wrapped(float coordinate, layers::Wrap wrap) {
+  if (wrap == layers::Wrap::Clamp) return coordinate > 0 ? (coordinate < 1 ? coordinate : 1.0f) : 0.0f;
+  const float half = coordinate * 0.5f;
+  const float there_and_back = 2 * (half - static_cast<float>(floor_to_int(half)));
+  return there_and_back > 1 ? 2 - there_and_back : there_and_back;
+}
+
+/// Neighbours beyond the border are the border itself, for clamped coordinates as for mirrored ones.
+inline Tap bordered_tap(float coordinate, int size, layers::Wrap wrap) {
+  const float x = wrapped(coordinate, wrap) * static_cast<float>(size) - 0.5f;
+  const int below = floor_to_int(x);
+  return {std::max(below, 0), std::min(below + 1, size - 1), x - static_cast<float>(below)};
+}
+
+inline Tap tap(float coordinate, int size, layers::Wrap wrap = layers::Wrap::Repeat) {
+  if (wrap != layers::Wrap::Repeat) return bordered_tap(coordinate, size, wrap);
   const float repeated = coordinate - static_cast<float>(floor_to_int(coordinate));
   const float x = repeated * static_cast<float>(size) - 0.5f;
   const int below = floor_to_int(x);
@@ -69,13 +92,13 @@ inline Tap tap(float coordinate, int size) {
 }
 
 inline Float4 nearest(const MipLevel& level, float u, float v) {
-  const Tap x = tap(u, level.width), y = tap(v, level.height);
+  const Tap x = tap(u, level.width, level.wrap_u), y = tap(v, level.height, level.wrap_v);
   const int column = x.share < 0.5f ? x.first : x.second, row = y.share < 0.5f ? y.first : y.second;
   return level.texels[static_cast<std::size_t>(row) * level.width + column];
 }
 
 inline Float4 bilinear(const MipLevel& level, float u, float v) {
-  const Tap x = tap(u, level.width), y = tap(v, level.height);
+  const Tap x = tap(u, level.width, level.wrap_u), y = tap(v, level.height, level.wrap_v);
   const Float4* upper = level.texels.data() + static_cast<std::size_t>(y.first) * level.width;
   const Float4* lower = level.texels.data() + static_cast<std::size_t>(y.second) * level.width;
   return mix(mix(upper[x.first], upper[x.second], x.share), mix(lower[x.first], lower[x.second], x.share),

@@ -150,27 +150,29 @@ PartVertices::PartVertices(const layers::SceneFrame& frame, const layers::Part& 
                            const Shader& shader)
     : mesh_(&frame.scene->meshes[part.mesh]) {
   const bool is_skinned = layers::is_built(layers::Effect::Skinning) && part.skin >= 0;
-  const dmat4 world_from_source =
-      !is_skinned && part.node >= 0 ? frame.world_from_node[part.node] : dmat4(1.0);
+  const bool is_morphed = layers::is_built(layers::Effect::Morphing) && !mesh_->morphs.empty();
+  const dmat4 world_from_mesh = !is_skinned && part.node >= 0 ? frame.world_from_node[part.node] : dmat4(1.0);
+  const dmat4 world_from_source = is_morphed ? dmat4(1.0) : world_from_mesh;
+  if (is_skinned || is_morphed) world_ = layers::world_positions(frame, part);
+  if (is_morphed && shader.lit && !mesh_->normals.empty()) normals_ = layers::morphed_normals(frame, part);
   if (is_skinned) {
-    world_ = layers::world_positions(frame, part);
     for (const dmat4& joint : layers::joint_palette(frame, part))
       joint_normals_.push_back(cofactors(dmat3(joint)));
   }
   sprite_from_source_ = view.sprite_from_world * world_from_source;
   eye_from_source_ = rows_of(world_from_source);
   for (int r = 0; r < 3; ++r) eye_from_source_.row[r].w -= view.eye[r];
-  mirrored_ = glm::determinant(dmat3(world_from_source)) < 0;
-  normal_from_mesh_ = cofactors(dmat3(world_from_source)) * (mirrored_ ? -1.0 : 1.0);
+  mirrored_ = glm::determinant(dmat3(world_from_mesh)) < 0;
+  normal_from_mesh_ = cofactors(dmat3(world_from_mesh)) * (mirrored_ ? -1.0 : 1.0);
   reads_position_ = shader.lit || shader.layout.position >= 0;
   reads_normal_ = shader.lit && !mesh_->normals.empty();
   reads_color_ = shader.layout.color >= 0 && !mesh_->colors.empty();
-  reads_uv_ = shader.layout.uv >= 0 && !mesh_->uvs.empty();
+  reads_uv_ = shader.layout.uv >= 0 && !(mesh_->uvs.empty() && mesh_->emissive_uvs.empty());
 }
 
 template <bool kSkinned>
 Float4 PartVertices::world_normal(int i) const {
-  const dvec3 n(mesh_->normals[i]);
+  const dvec3 n = normals_.empty() ? dvec3(mesh_->normals[i]) : normals_[i];
   dvec3 world(0);
   if (!kSkinned || joint_normals_.empty() || mesh_->joints.empty()) {
     world = normal_from_mesh_ * n;
@@ -188,9 +190,14 @@ ShadePoint PartVertices::shade_point(int i) const {
   ShadePoint point;
   if (reads_position_) point.position = point.lit_at = float4(layers::vec3(eye_position<kSkinned>(i)));
   if (reads_normal_) point.normal = world_normal<kSkinned>(i);
-  if (reads_color_) point.vertex_color = float4(mesh_->colors[i], 1);
-  if (reads_uv_)
-    point.uv = Float4{usable_coordinate(mesh_->uvs[i].x), usable_coordinate(mesh_->uvs[i].y), 0, 0};
+  if (reads_color_)
+    point.vertex_color = float4(mesh_->colors[i], mesh_->alphas.empty() ? 1 : mesh_->alphas[i]);
+  if (reads_uv_) {
+    const std::vector<layers::vec2>& own = mesh_->uvs.empty() ? mesh_->emissive_uvs : mesh_->uvs;
+    const std::vector<layers::vec2>& glow = mesh_->emissive_uvs.empty() ? own : mesh_->emissive_uvs;
+    point.uv = Float4{usable_coordinate(own[i].x), usable_coordinate(own[i].y), usable_coordinate(glow[i].x),
+                      usable_coordinate(glow[i].y)};
+  }
   return point;
 }
 template ShadePoint PartVertices::shade_point<true>(int i) const;

@@ -73,7 +73,11 @@ class PartVertices {
 
   int size() const { return static_cast<int>(mesh_->positions.size()); }
   const layers::Mesh& mesh() const { return *mesh_; }
-  bool skinned() const { return layers::is_built(layers::Effect::Skinning) && !world_.empty(); }
+  /// Skinned or morphed: world positions are made for it.
+  bool skinned() const {
+    return (layers::is_built(layers::Effect::Skinning) || layers::is_built(layers::Effect::Morphing)) &&
+           !world_.empty();
+  }
   template <bool kSkinned>
   layers::dvec3 sprite_point(int i) const {
     return sprite_from_source_(source<kSkinned>(i));
@@ -104,10 +108,11 @@ class PartVertices {
   Float4 world_normal(int i) const;
 
   const layers::Mesh* mesh_;
-  std::vector<layers::dvec3> world_;          ///< skinned parts only
+  std::vector<layers::dvec3> world_;          ///< skinned and morphed parts only
+  std::vector<layers::dvec3> normals_;        ///< morphed parts only: in the mesh's space
   std::vector<layers::dmat3> joint_normals_;  ///< skinned parts only: cofactors of the palette
   Rows34 sprite_from_source_, eye_from_source_;
-  layers::dmat3 normal_from_mesh_{1.0};
+  layers::dmat3 normal_from_mesh_{1.0};  ///< of parts without a skin
   bool mirrored_ = false;
   bool reads_position_ = false, reads_normal_ = false, reads_color_ = false, reads_uv_ = false;
 };

@@ -14,8 +14,13 @@ namespace {
 
 template <typename T>
 bool varies(const Keys<T>& keys) {
-  return std::any_of(keys.values.begin(), keys.values.end(),
-                     [&](const T& v) { return v != keys.values.front(); });
+  const auto differs = [&](const T& v) { return v != keys.values.front(); };
+  // A spline between equal keys still swings out where it has slopes.
+  const auto slopes = [](const T& v) { return v != 0.0 * v; };
+  return std::any_of(keys.values.begin(), keys.values.end(), differs) ||
+         (keys.values.size() > 1 &&
+          (std::any_of(keys.out_tangents.begin(), keys.out_tangents.end(), slopes) ||
+           std::any_of(keys.in_tangents.begin(), keys.in_tangents.end(), slopes)));
 }
 
 template <typename T>
@@ -25,17 +30,24 @@ void extend_to_keys(const Keys<T>& keys, double& begin_s, double& end_s) {
   end_s = std::max(end_s, keys.times_s.back());
 }
 
-/// The time inside the first period that shows the same as `t_s`.
-double looped(const TransformTrack& track, double t_s) {
-  double begin_s = HUGE_VAL, end_s = -HUGE_VAL;
-  extend_to_keys(track.translation, begin_s, end_s);
-  extend_to_keys(track.rotation, begin_s, end_s);
-  extend_to_keys(track.scale, begin_s, end_s);
+/// The time inside the period that shows the same as `t_s`.
+double wrapped(double begin_s, double end_s, double t_s) {
   const double period_s = end_s - begin_s, since_s = t_s - begin_s;
   if (!(period_s > 0) || !std::isfinite(period_s) || !std::isfinite(since_s)) return t_s;
   const double rest_s = std::fmod(since_s, period_s);
   return begin_s + (rest_s < 0 ? rest_s + period_s : rest_s);
 }
+
+double looped(const TransformTrack& track, double t_s) {
+  if (track.loop_end_s > 0) return wrapped(0, track.loop_end_s, t_s);
+  double begin_s = HUGE_VAL, end_s = -HUGE_VAL;
+  extend_to_keys(track.translation, begin_s, end_s);
+  extend_to_keys(track.rotation, begin_s, end_s);
+  extend_to_keys(track.scale, begin_s, end_s);
+  return wrapped(begin_s, end_s, t_s);
+}
+
+Transform moved(const MorphTrack&, const Transform& transform, double) { return transform; }
 
 Transform moved(const TransformTrack& track, Transform transform, double t_s) {
   const double at_s = track.loop ? looped(track, t_s) : t_s;
@@ -73,6 +85,7 @@ bool varying(const FlightTrack& track) {
   return varies(track.position) ||
          (!track.position.values.empty() && (varies(track.target) || varies(track.bank_rad)));
 }
+bool varying(const MorphTrack&) { return false; }
 bool varying(const SpinTrack& track) { return track.rate_rad_per_s != 0 && track.axis != dvec3{0, 0, 0}; }
 
 double last_key_s(const TransformTrack& track) {
@@ -80,7 +93,7 @@ double last_key_s(const TransformTrack& track) {
   extend_to_keys(track.translation, begin_s, end_s);
   extend_to_keys(track.rotation, begin_s, end_s);
   extend_to_keys(track.scale, begin_s, end_s);
-  return end_s;
+  return std::max(end_s, track.loop_end_s);
 }
 double last_key_s(const FlightTrack& track) {
   double begin_s = HUGE_VAL, end_s = 0;
@@ -90,8 +103,21 @@ double last_key_s(const FlightTrack& track) {
   return end_s;
 }
 double last_key_s(const SpinTrack&) { return 0; }
+double last_key_s(const MorphTrack& track) {
+  double begin_s = HUGE_VAL, end_s = 0;
+  for (const Keys<double>& keys : track.weights) extend_to_keys(keys, begin_s, end_s);
+  return std::max(end_s, track.loop_end_s);
+}
 
 }  // namespace
+
+double looped(const MorphTrack& track, double t_s) {
+  if (!track.loop) return t_s;
+  if (track.loop_end_s > 0) return wrapped(0, track.loop_end_s, t_s);
+  double begin_s = HUGE_VAL, end_s = -HUGE_VAL;
+  for (const Keys<double>& keys : track.weights) extend_to_keys(keys, begin_s, end_s);
+  return wrapped(begin_s, end_s, t_s);
+}
 
 glm::dquat look_rotation(const dvec3& forward, const dvec3& heading, double bank_rad) {
   const double length = std::hypot(forward.x, forward.y, forward.z);

@@ -15,6 +15,10 @@
 /// Two equal neighbouring keys give that value bit by bit in between: what stands still must not look as if
 /// it moved.
 ///
+/// CubicSpline  cubic Hermite with the slopes of the keys, per second: with Δ = tᵢ₊₁ − tᵢ
+///                (2τ³ − 3τ² + 1) pᵢ + Δ (τ³ − 2τ² + τ) outᵢ + (3τ² − 2τ³) pᵢ₊₁ + Δ (τ³ − τ²) inᵢ₊₁
+///              of rotations component by component, then of unit length (glTF 2.0, appendix C)
+///
 /// Everything is pure and finite for finite keys and times.
 
 #include "layers/scene.h"
@@ -39,8 +43,11 @@ glm::dquat look_rotation(const dvec3& forward, const dvec3& heading, double bank
 
 /// The node's transform at `t_s` under `track`, given the one without it. A spin turns about its axis in the
 /// node's own space; a flight's positions and targets are in the parent's space. A looped TransformTrack
-/// repeats from its earliest to its latest key over all channels.
+/// repeats from its earliest to its latest key over all channels. A MorphTrack moves no node.
 Transform transform_at(const Track& track, const Transform& without, double t_s);
+
+/// The time inside the first period of a looped track that shows the same as `t_s`; others: `t_s`.
+double looped(const MorphTrack& track, double t_s);
 
 /// Does the transform change with time? False for tracks whose keys are all equal.
 bool moves(const Track& track);

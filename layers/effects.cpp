@@ -16,6 +16,20 @@ bool is_zero(const vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 bool has_lights(const Scene& scene) { return !scene.lights.empty(); }
 
+bool has_emissive_map(const Material& material) {
+  return !material.unlit && material.emissive_texture >= 0 && !is_zero(material.emissive);
+}
+
+/// Who fades with distance, or nobody.
+std::string fading_light(const Scene& scene) {
+  for (const Light& light : scene.lights) {
+    const bool local = light.kind == Light::Kind::Point || light.kind == Light::Kind::Spot;
+    if (local && (light.attenuation != dvec3{1, 0, 0} || light.range_m > 0))
+      return "light '" + light.name + "' fades with distance";
+  }
+  return {};
+}
+
 /// Why this part calls for the effect; empty if it does not.
 std::string call_of(const Scene& scene, const Part& part, Effect effect) {
   const Material* material = part.material >= 0 ? &scene.materials[part.material] : nullptr;
@@ -25,6 +39,8 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
     case Effect::Texture:
     case Effect::MipFilter:
       if (texture) return material_name + " has texture '" + texture->name + "'";
+      if (material && has_emissive_map(*material))
+        return material_name + " has texture '" + scene.textures[material->emissive_texture].name + "'";
       break;
     case Effect::Lighting:
       if (material && !material->unlit && has_lights(scene)) return material_name + " is lit";
@@ -36,9 +52,22 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
     case Effect::Translucency:
       if (material && material->opacity < 1) return material_name + " has opacity < 1";
       if (texture && texture->has_alpha) return "texture '" + texture->name + "' has alpha";
+      if (!scene.meshes[part.mesh].alphas.empty())
+        return "part '" + part.name + "' has vertex colours with alpha";
       break;
     case Effect::Skinning:
       if (part.skin >= 0) return "part '" + part.name + "' has a skin";
+      break;
+    case Effect::Morphing:
+      if (!scene.meshes[part.mesh].morphs.empty()) return "part '" + part.name + "' has morph targets";
+      break;
+    case Effect::EmissiveMap:
+      if (material && has_emissive_map(*material))
+        return material_name + " has emissive texture '" + scene.textures[material->emissive_texture].name +
+               "'";
+      break;
+    case Effect::LightFalloff:
+      if (!material || !material->unlit) return fading_light(scene);
       break;
     default:
       break;  // asked for by layers, not by parts
@@ -212,6 +241,12 @@ std::string why_not(const Scene& scene, std::span<const Layer> layers, const Run
       return "every material is opaque";
     case Effect::Skinning:
       return "no part has a skin";
+    case Effect::EmissiveMap:
+      return "no lit material has an emissive texture";
+    case Effect::Morphing:
+      return "no part has morph targets";
+    case Effect::LightFalloff:
+      return "no light fades with distance";
     case Effect::LayerResolution:
       return "every layer has the display's resolution";
     case Effect::MotionBlur:
@@ -241,7 +276,7 @@ std::string why_of_shadow_maps(const Scene& scene, std::span<const Layer> layers
 }
 
 bool moves(const Scene& scene, const Part& part) {
-  if (is_animated(scene, part.node)) return true;
+  if (is_animated(scene, part.node) || !scene.meshes[part.mesh].morphs.empty()) return true;
   if (part.skin < 0) return false;
   const Skin& skin = scene.skins[part.skin];
   return std::any_of(skin.joints.begin(), skin.joints.end(),

@@ -111,6 +111,17 @@ T catmull_rom(const Keys<T>& keys, const Place& at) {
   return finite(value) ? value : linear(s.p1, s.p2, at.tau);  // squares of huge values can overflow
 }
 
+/// The glTF spline of span `i`; the end value where a square of huge values overflows.
+template <typename T>
+T cubic_spline(const Keys<T>& keys, const Place& at) {
+  const int i = at.index;
+  const T &a = keys.values[i], &b = keys.values[i + 1];
+  if (at.tau == 0) return a;
+  if (at.tau == 1) return b;
+  const double span_s = keys.times_s[i + 1] - keys.times_s[i];
+  return hermite(a, b, keys.out_tangents[i] * span_s, keys.in_tangents[i + 1] * span_s, at.tau);
+}
+
 template <typename T>
 T vector_at(const Keys<T>& keys, double t_s) {
   TALISMAN_CHECK(!keys.values.empty());
@@ -126,6 +137,10 @@ T vector_at(const Keys<T>& keys, double t_s) {
       return linear(a, b, at.tau);
     case Interpolation::CatmullRom:
       return catmull_rom(keys, at);
+    case Interpolation::CubicSpline: {
+      const T value = cubic_spline(keys, at);
+      return finite(value) ? value : linear(a, b, at.tau);
+    }
   }
   return a;
 }
@@ -185,6 +200,7 @@ glm::dquat value_at(const Keys<glm::dquat>& keys, double t_s) {
   const glm::dquat a = unit(keys.values[at.index]), b = unit(keys.values[at.index + 1]);
   if (at.tau == 0) return a;
   if (at.tau == 1) return b;
+  if (keys.interpolation == Interpolation::CubicSpline) return unit(cubic_spline(keys, at));
   return keys.interpolation == Interpolation::Step ? a : slerp(a, b, at.tau);
 }
 

@@ -54,7 +54,7 @@ int rigid_node_of(const Scene& scene, const std::vector<int>& parts, const std::
   int common = first;
   for (const int part : parts) {
     const int node = scene.parts[part].node;
-    if (scene.parts[part].skin >= 0 || carriers.at(node) != carriers.at(first)) return -1;
+    if (deforms(scene, scene.parts[part]) || carriers.at(node) != carriers.at(first)) return -1;
     common = common_ancestor(scene, common, node);
   }
   return common >= 0 ? common : first;  // trees that all stand still: any of their nodes will do
@@ -177,6 +177,7 @@ struct Mover {
 Mover mover_of(const Scene& scene, const Part& part, const std::vector<int>& carriers, const TopLevel& top) {
   if (part.skin >= 0 && !scene.skins.at(part.skin).joints.empty())
     return {Mover::Kind::Skinned, top.of(scene.skins[part.skin].joints[0])};
+  if (deforms(scene, part)) return {Mover::Kind::Rigid, part.node};
   const int carrier = carriers.at(part.node);
   return carrier >= 0 ? Mover{Mover::Kind::Rigid, carrier} : Mover{Mover::Kind::Rest, top.of(part.node)};
 }

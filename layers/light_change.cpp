@@ -9,8 +9,9 @@ namespace {
 int carrier_of(std::span<const int> carriers, int node) { return node >= 0 ? carriers[node] : -1; }
 
 /// A skinned part follows its joints, and deforms.
-bool move_against_each_other(const Part& part, int other_node, std::span<const int> carriers) {
-  return part.skin >= 0 || carrier_of(carriers, part.node) != carrier_of(carriers, other_node);
+bool move_against_each_other(const Scene& scene, const Part& part, int other_node,
+                             std::span<const int> carriers) {
+  return deforms(scene, part) || carrier_of(carriers, part.node) != carrier_of(carriers, other_node);
 }
 
 bool is_black(const vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
@@ -33,10 +34,10 @@ LightChange light_change_of(const Scene& scene, const Layer& layer, std::span<co
     if (material.unlit) continue;
     lit = true;
     for (const Light& light : scene.lights)
-      if (light.kind != Light::Kind::Ambient && move_against_each_other(part, light.node, carriers))
+      if (light.kind != Light::Kind::Ambient && move_against_each_other(scene, part, light.node, carriers))
         return {"part '" + part.name + "' and light '" + light.name + "' move against each other", ""};
     if (has_source && !is_black(material.specular) &&
-        move_against_each_other(part, camera_node(scene), carriers))
+        move_against_each_other(scene, part, camera_node(scene), carriers))
       return {"part '" + part.name + "' is specular and moves against the eye", ""};
   }
   if (!lit) return {"", "no part of the layer is lit"};

@@ -40,9 +40,10 @@ struct MeanTexel {
   double alpha = 1;
 };
 
-MeanTexel mean_texel(const Scene& scene, const Material& material) {
-  if (material.texture < 0) return {};
-  const Texture& texture = scene.textures[material.texture];
+/// `cutoff` as Material::alpha_cutoff.
+MeanTexel mean_texel(const Scene& scene, int index, double cutoff) {
+  if (index < 0) return {};
+  const Texture& texture = scene.textures[index];
   const std::size_t count = texture.rgba.size() / 4;
   if (count == 0) return {};
   const std::size_t stride = (count + kMostTexelsRead - 1) / kMostTexelsRead | 1;  // odd: not along a column
@@ -51,7 +52,8 @@ MeanTexel mean_texel(const Scene& scene, const Material& material) {
   int read = 0;
   for (std::size_t i = 0; i < count; i += stride, ++read) {
     const std::uint8_t* texel = &texture.rgba[4 * i];
-    const double alpha = texture.has_alpha ? texel[3] / 255.0 : 1;
+    double alpha = texture.has_alpha ? texel[3] / 255.0 : 1;
+    if (cutoff > 0) alpha = alpha >= cutoff ? 1 : 0;
     mean.color += alpha * dvec3(linear[texel[0]], linear[texel[1]], linear[texel[2]]);
     mean.alpha += alpha;
   }
@@ -63,6 +65,13 @@ dvec3 mean_vertex_color(const Mesh& mesh) {
   dvec3 sum(0.0);
   for (const vec3& color : mesh.colors) sum += dvec3(color);
   return sum / static_cast<double>(mesh.colors.size());
+}
+
+double mean_vertex_alpha(const Mesh& mesh) {
+  if (mesh.alphas.empty()) return 1;
+  double sum = 0;
+  for (const float alpha : mesh.alphas) sum += alpha;
+  return sum / static_cast<double>(mesh.alphas.size());
 }
 
 double area_of(const Mesh& mesh) {
@@ -105,8 +114,9 @@ std::vector<double> weights_of(const Scene& scene, const Layer& layer) {
 void add_part(const Scene& scene, const Part& part, double weight, MeanSurface& mean) {
   static const Material plain;
   const Material& material = part.material >= 0 ? scene.materials[part.material] : plain;
-  const MeanTexel texel = mean_texel(scene, material);
-  const double opacity = std::clamp(static_cast<double>(material.opacity), 0.0, 1.0);
+  const MeanTexel texel = mean_texel(scene, material.texture, material.alpha_cutoff);
+  const double opacity = std::clamp(static_cast<double>(material.opacity), 0.0, 1.0) *
+                         mean_vertex_alpha(scene.meshes[part.mesh]);
   const dvec3 base =
       opacity * dvec3(material.base_color) * mean_vertex_color(scene.meshes[part.mesh]) * texel.color;
   if (material.unlit) {
@@ -115,13 +125,14 @@ void add_part(const Scene& scene, const Part& part, double weight, MeanSurface& 
   }
   const dvec3 specular = weight * opacity * texel.alpha * dvec3(material.specular);
   mean.base += weight * base;
-  mean.constant += weight * opacity * texel.alpha * dvec3(material.emissive);
+  mean.constant += weight * opacity * texel.alpha * dvec3(material.emissive) *
+                   mean_texel(scene, material.emissive_texture, 0).color;
   mean.specular += specular;
   mean.shininess += (specular.x + specular.y + specular.z) * std::max(material.shininess, 0.0f);
 }
 
 /// 1 in the inner cone of a spot, 0 outside the outer one, smooth between; 1 for other lights.
-double falloff(const LightState& light, const dvec3& to_light) {
+double in_cone(const LightState& light, const dvec3& to_light) {
   if (light.kind != Light::Kind::Spot) return 1;
   constexpr double kSharpest = 1e-6;  // a cone without a soft edge still has a finite slope
   const double outer = std::cos(light.outer_cone_rad), inner = std::cos(light.inner_cone_rad);
@@ -150,7 +161,9 @@ dvec3 share_of_light(const MeanSurface& surface, const LightState& light, const 
       light.kind == Light::Kind::Directional ? -light.direction : light.position - point.position);
   const double facing = dot(point.normal, to_light);
   if (!(facing > 0)) return dvec3(0.0);
-  color *= falloff(light, to_light);
+  color *= in_cone(light, to_light);
+  if (light.falls_off() && light.kind != Light::Kind::Directional)
+    color *= falloff(light, glm::length(light.position - point.position));
   const dvec3 diffuse = surface.base * color * facing;
   if (!surface.has_specular()) return diffuse;
   const dvec3 halfway = unit_or_zero(to_light + unit_or_zero(point.eye - point.position));

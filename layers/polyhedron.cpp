@@ -226,14 +226,15 @@ int lowest_common_node(const Scene& scene, int a, int b) {
 
 bool is_at_rest(const Scene& scene, const Layer& layer) {
   return std::none_of(layer.parts.begin(), layer.parts.end(), [&](int part) {
-    return scene.parts[part].skin >= 0 || is_animated(scene, scene.parts[part].node);
+    return deforms(scene, scene.parts[part]) || is_animated(scene, scene.parts[part].node);
   });
 }
 
 bool follows_rigid_node(const Scene& scene, const Layer& layer) {
   if (layer.rigid_node < 0) return false;
   return std::all_of(layer.parts.begin(), layer.parts.end(), [&](int part) {
-    return scene.parts[part].skin < 0 && is_self_or_ancestor(scene, layer.rigid_node, scene.parts[part].node);
+    return !deforms(scene, scene.parts[part]) &&
+           is_self_or_ancestor(scene, layer.rigid_node, scene.parts[part].node);
   });
 }
 
@@ -312,7 +313,7 @@ namespace {
 Layer alone(const Scene& scene, int part) {
   Layer layer;
   layer.parts = {part};
-  layer.rigid_node = scene.parts[part].skin < 0 ? scene.parts[part].node : -1;
+  layer.rigid_node = deforms(scene, scene.parts[part]) ? -1 : scene.parts[part].node;
   return layer;
 }
 

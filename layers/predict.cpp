@@ -123,6 +123,9 @@ SceneFrame predict_linear(const SceneFrame& before, const SceneFrame& now, doubl
   ahead.camera = predict_camera(before.camera, now.camera, frames_ahead);
   for (std::size_t l = 0; l < now.lights.size(); ++l)
     ahead.lights[l] = predict_light(before.lights[l], now.lights[l], frames_ahead);
+  for (std::size_t n = 0; n < now.morph_weights.size(); ++n)
+    for (std::size_t k = 0; k < now.morph_weights[n].size(); ++k)
+      ahead.morph_weights[n][k] += frames_ahead * (now.morph_weights[n][k] - before.morph_weights[n][k]);
   return ahead;
 }
 

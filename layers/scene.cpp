@@ -8,6 +8,7 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "layers/animation.h"
+#include "layers/built_effects.h"
 #include "layers/check.h"
 
 namespace talisman::layers {
@@ -73,6 +74,28 @@ CameraState camera_at(const Scene& scene, const std::vector<dmat4>& worlds) {
   return {rigid(node_matrix(worlds, camera.node)), camera.fov_y_rad, camera.near_m, camera.far_m};
 }
 
+double morph_weight_at(const MorphTrack& track, std::size_t target, double at_s, double otherwise) {
+  const Keys<double>& keys = track.weights[target];
+  return keys.values.empty() ? otherwise : value_at(keys, looped(track, at_s));
+}
+
+/// Empty where no mesh has morph targets.
+std::vector<std::vector<double>> morph_weights_at(const Scene& scene, double t_s) {
+  std::vector<std::vector<double>> weights;
+  if (std::none_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return !m.morphs.empty(); }))
+    return weights;
+  for (const Node& node : scene.nodes) weights.push_back(node.morph_weights);
+  for (const Track& track : scene.tracks) {
+    const auto* motion = std::get_if<MorphTrack>(&track.motion);
+    if (motion == nullptr) continue;
+    std::vector<double>& own = weights.at(track.node);
+    own.resize(std::max(own.size(), motion->weights.size()), 0);
+    for (std::size_t k = 0; k < motion->weights.size(); ++k)
+      own[k] = morph_weight_at(*motion, k, t_s, own[k]);
+  }
+  return weights;
+}
+
 LightState light_at(const Light& light, const std::vector<dmat4>& worlds) {
   const dmat4 world = node_matrix(worlds, light.node);
   const dvec3 direction = direction_or(dvec3(world * dvec4(light.direction, 0)), {0, -1, 0});
@@ -83,7 +106,9 @@ LightState light_at(const Light& light, const std::vector<dmat4>& worlds) {
           light.inner_cone_rad,
           light.outer_cone_rad,
           light.casts_shadow,
-          light.shadow};
+          light.shadow,
+          light.attenuation,
+          light.range_m};
 }
 
 }  // namespace
@@ -104,6 +129,7 @@ SceneFrame Scene::at(double t_s) const {
   frame.camera = camera_at(*this, frame.world_from_node);
   frame.lights.reserve(lights.size());
   for (const Light& light : lights) frame.lights.push_back(light_at(light, frame.world_from_node));
+  if (is_built(Effect::Morphing)) frame.morph_weights = morph_weights_at(*this, t_s);
   return frame;
 }
 
@@ -111,6 +137,15 @@ double Scene::duration_s() const {
   double end = 0;
   for (const Track& track : tracks) end = std::max(end, end_s(track));
   return end;
+}
+
+double falloff(const LightState& light, double distance_m) {
+  const dvec3& a = light.attenuation;
+  const double below = a.x + distance_m * (a.y + distance_m * a.z);
+  constexpr double kBrightest = 1e12;  // at the lamp itself
+  double factor = below > 1 / kBrightest ? 1 / below : kBrightest;
+  if (light.range_m > 0) factor *= std::max(0.0, 1 - std::pow(distance_m / light.range_m, 4));
+  return factor;
 }
 
 bool is_animated(const Scene& scene, int node) {

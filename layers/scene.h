@@ -26,18 +26,31 @@
 
 namespace talisman::layers {
 
+/// What one morph target adds to the vertices of a mesh at weight 1; each array is empty or as long as
+/// `positions`.
+struct MorphTarget {
+  std::vector<vec3> positions;  ///< metres, added
+  std::vector<vec3> normals;    ///< added; the sum is of unit length again
+};
+
 /// Indexed triangles. Every vertex array but `positions` is either empty or as long as `positions`.
 struct Mesh {
   std::string name;
   std::vector<vec3> positions;         ///< metres, in the space of the part's node
   std::vector<vec3> normals;           ///< unit length
   std::vector<vec2> uvs;               ///< texture coordinates, 1 = one repeat
+  std::vector<vec2> emissive_uvs;      ///< of the emissive texture, where they are not `uvs`
   std::vector<vec3> colors;            ///< linear, multiplied with the base colour
+  std::vector<float> alphas;           ///< 0 … 1, multiplied with the opacity; only with `colors`
   std::vector<std::uint32_t> indices;  ///< three per triangle
   std::vector<glm::uvec4> joints;      ///< skinning: indices into Skin::joints
   std::vector<vec4> weights;           ///< skinning: ≥ 0; divided by their sum where they are used
+  std::vector<MorphTarget> morphs;     ///< weighted by Node::morph_weights
   int triangle_count() const { return static_cast<int>(indices.size() / 3); }
 };
+
+/// Where a texture is looked up outside 0 … 1.
+enum class Wrap { Repeat, Clamp, Mirror };
 
 /// sRGB bytes, straight alpha, 4 per texel.
 struct Texture {
@@ -45,6 +58,9 @@ struct Texture {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;
   bool has_alpha = false;  ///< some texel has alpha < 255
+  Wrap wrap_u = Wrap::Repeat, wrap_v = Wrap::Repeat;
+  bool nearest = false;  ///< magnified: the nearest texel alone instead of four
+  bool finest = false;   ///< minified: never a coarser level
 };
 
 struct Material {
@@ -58,6 +74,10 @@ struct Material {
   vec3 specular{0, 0, 0};
   float shininess = 0;  ///< Blinn-Phong exponent, ≥ 0
   vec3 emissive{0, 0, 0};
+  int emissive_texture = -1;  ///< index into Scene::textures, multiplied with `emissive`; -1: none
+  /// 0 … 1; above 0: where the alpha of texture and vertices is at least this the surface is opaque,
+  /// elsewhere it is not there.
+  float alpha_cutoff = 0;
   float reflectivity = 0;  ///< 0 … 1: share of the looked-up planar reflection that is added
   bool two_sided = false;  ///< otherwise back faces are culled
   bool unlit = false;      ///< base colour as it is (sky, backdrops)
@@ -101,7 +121,11 @@ struct Light {
   /// Spot: angles from the axis, 0 ≤ inner ≤ outer ≤ π/2. Full light inside the inner cone, none outside the
   /// outer one, smooth between.
   double inner_cone_rad = 0.4, outer_cone_rad = 0.6;
-  bool casts_shadow = false;  ///< of at most kMaxShadowLights lights; not of an ambient one
+  /// Point, Spot, with d the distance in metres: the colour is scaled by 1 / (x + y d + z d²), and by
+  /// max(0, 1 - (d / range)⁴) where there is a range.
+  dvec3 attenuation{1, 0, 0};  ///< ≥ 0, not all 0
+  double range_m = 0;          ///< ≥ 0; 0: without end
+  bool casts_shadow = false;   ///< of at most kMaxShadowLights lights; not of an ambient one
   ShadowMapOptions shadow;
 };
 
@@ -122,17 +146,19 @@ struct Transform {
 
 struct Node {
   std::string name;
-  int parent = -1;  ///< parents come before their children
-  Transform local;  ///< where no track moves it
+  int parent = -1;                      ///< parents come before their children
+  Transform local;                      ///< where no track moves it
+  std::vector<double> morph_weights{};  ///< of the morph targets of its meshes, where no track moves them
 };
 
-enum class Interpolation { Step, Linear, CatmullRom };
+enum class Interpolation { Step, Linear, CatmullRom, CubicSpline };
 
 template <typename T>
 struct Keys {
   std::vector<double> times_s;  ///< strictly increasing
   std::vector<T> values;
   Interpolation interpolation = Interpolation::Linear;
+  std::vector<T> in_tangents{}, out_tangents{};  ///< CubicSpline: slopes per second, one per key
 };
 
 /// Keyframes of a node's translation, rotation and scale; an empty channel keeps the node's own value.
@@ -142,6 +168,15 @@ struct TransformTrack {
   Keys<glm::dquat> rotation;
   Keys<dvec3> scale;
   bool loop = false;
+  /// Looped: what is repeated lasts from 0 to this time; 0: from the earliest to the latest key.
+  double loop_end_s = 0;
+};
+
+/// Keyframes of a node's morph weights, one list per target; an empty list keeps the node's own weight.
+struct MorphTrack {
+  std::vector<Keys<double>> weights;
+  bool loop = false;
+  double loop_end_s = 0;  ///< as above
 };
 
 /// A flight along a spline (centripetal Catmull-Rom through the positions). The node's -z looks along the
@@ -162,7 +197,7 @@ struct SpinTrack {
 
 struct Track {
   int node = -1;
-  std::variant<TransformTrack, FlightTrack, SpinTrack> motion;
+  std::variant<TransformTrack, FlightTrack, SpinTrack, MorphTrack> motion;
 };
 
 /// A mesh instance with its material: the smallest renderable unit [LS97 2.4].
@@ -188,6 +223,9 @@ struct LightState {
   double inner_cone_rad = 0.4, outer_cone_rad = 0.6;
   bool casts_shadow = false;
   ShadowMapOptions shadow;
+  dvec3 attenuation{1, 0, 0};
+  double range_m = 0;
+  bool falls_off() const { return attenuation != dvec3{1, 0, 0} || range_m > 0; }
   bool operator==(const LightState&) const = default;
 };
 
@@ -200,6 +238,8 @@ struct SceneFrame {
   std::vector<dmat4> world_from_node;  ///< one per node
   CameraState camera;
   std::vector<LightState> lights;  ///< one per light
+  /// One per node; without any where no mesh of the scene has morph targets.
+  std::vector<std::vector<double>> morph_weights;
 };
 
 struct Scene {
@@ -225,13 +265,27 @@ struct Scene {
   double duration_s() const;
 };
 
-/// World positions of a part's vertices at `frame`: node transform, or linear-blend skinning where the part
-/// has a skin: p' = Σ wₖ Mₖ p / Σ wₖ; a vertex whose weights are all 0 follows the first joint it names.
+/// What a light's colour is scaled by at a distance, apart from its cone.
+double falloff(const LightState& light, double distance_m);
+
+/// Does the part change its shape: has it a skin, or morph targets?
+bool deforms(const Scene& scene, const Part& part);
+
+/// Positions and normals of the part's mesh at `frame`, in its own space, morph targets added: p + Σ wₖ Δpₖ.
+/// Cost: O(vertices · targets).
+std::vector<dvec3> morphed_positions(const SceneFrame& frame, const Part& part);
+std::vector<dvec3> morphed_normals(const SceneFrame& frame, const Part& part);
+
+/// World positions of a part's vertices at `frame`: morph targets, then node transform, or linear-blend
+/// skinning where the part has a skin: p' = Σ wₖ Mₖ p / Σ wₖ; a vertex whose weights are all 0 follows the first joint it names.
 /// Cost: O(vertices).
 std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part);
 
 /// World-from-vertex matrix of each joint of a skinned part: world_from_joint · joint_from_mesh.
 std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part);
+
+/// Morph weights of a part's mesh at `frame`, one per target; a weight that no node gives is 0.
+std::vector<double> morph_weights(const SceneFrame& frame, const Part& part);
 
 /// Does `node` or an ancestor move by a track? A track whose keys are all equal moves nothing. (A skinned
 /// part moves with its joints whatever its node does.) Cost: O(depth · tracks).

@@ -98,12 +98,36 @@ std::string weight_defect(const Mesh& mesh) {
   return {};
 }
 
+std::string alpha_defect(const Mesh& mesh) {
+  if (!mesh.alphas.empty() && mesh.colors.empty())
+    return broken("only with colors", mesh.alphas.size(), " alphas");
+  for (std::size_t i = 0; i < mesh.alphas.size(); ++i)
+    if (!(mesh.alphas[i] >= 0 && mesh.alphas[i] <= 1))
+      return broken("from 0 to 1", "alpha of vertex ", i, " is ", mesh.alphas[i]);
+  return {};
+}
+
+std::string morph_defect(const Mesh& mesh) {
+  const std::size_t n = mesh.positions.size();
+  for (const MorphTarget& morph : mesh.morphs) {
+    const std::string defect = first_of(
+        {optional_length("morph positions", morph.positions.size(), n),
+         optional_length("morph normals", morph.normals.size(), mesh.normals.size()),
+         finite_array("morph position", morph.positions), finite_array("morph normal", morph.normals)});
+    if (!defect.empty()) return defect;
+  }
+  return {};
+}
+
 std::string defect_of(const Scene&, const Mesh& mesh) {
   const std::size_t n = mesh.positions.size();
   return first_of(
       {optional_length("normals", mesh.normals.size(), n), optional_length("uvs", mesh.uvs.size(), n),
        optional_length("colors", mesh.colors.size(), n), optional_length("joints", mesh.joints.size(), n),
-       optional_length("weights", mesh.weights.size(), n), finite_array("position", mesh.positions),
+       optional_length("weights", mesh.weights.size(), n),
+       optional_length("emissive uvs", mesh.emissive_uvs.size(), n),
+       optional_length("alphas", mesh.alphas.size(), n), finite_array("emissive uv", mesh.emissive_uvs),
+       alpha_defect(mesh), morph_defect(mesh), finite_array("position", mesh.positions),
        finite_array("normal", mesh.normals), finite_array("uv", mesh.uvs), finite_array("color", mesh.colors),
        finite_array("weight", mesh.weights), index_array_defect(mesh), weight_defect(mesh)});
 }
@@ -129,6 +153,8 @@ std::string defect_of(const Scene& scene, const Material& material) {
        color_defect("emissive color", material.emissive), range_defect("opacity", material.opacity, 0, 1),
        finite("shininess", material.shininess), range_defect("shininess", material.shininess, 0, HUGE_VAL),
        index_in("texture", material.texture, scene.textures.size(), true),
+       index_in("emissive texture", material.emissive_texture, scene.textures.size(), true),
+       range_defect("alpha cutoff", material.alpha_cutoff, 0, 1),
        index_in("second texture", material.texture2, scene.textures.size(), true),
        range_defect("texture blend 1", material.texture_blend.x, 0, 1),
        range_defect("texture blend 2", material.texture_blend.y, 0, 1),
@@ -158,6 +184,8 @@ std::string defect_of(const Scene& scene, const Node& node) {
   const auto own_index = &node - scene.nodes.data();
   if (node.parent < -1 || node.parent >= own_index)
     return broken(text("-1 or a node before it, below ", own_index), "parent ", node.parent);
+  for (const double weight : node.morph_weights)
+    if (auto d = finite("morph weight", weight); !d.empty()) return d;
   return first_of({finite("translation", node.local.translation),
                    rotation_defect("rotation", node.local.rotation), finite("scale", node.local.scale)});
 }
@@ -171,6 +199,23 @@ std::string value_defect(const std::string& what, const T& value) {
 }
 
 template <typename T>
+std::string tangent_defect(const std::string& channel, const Keys<T>& keys) {
+  if (keys.in_tangents.size() != keys.values.size() || keys.out_tangents.size() != keys.values.size())
+    return broken("two per key", channel, " has ", keys.in_tangents.size(), " and ", keys.out_tangents.size(),
+                  " tangents");
+  for (std::size_t i = 0; i < keys.values.size(); ++i) {
+    if (auto d = finite(text(channel, " tangent into key ", i), keys.in_tangents[i]); !d.empty()) return d;
+    if (auto d = finite(text(channel, " tangent out of key ", i), keys.out_tangents[i]); !d.empty()) return d;
+  }
+  return {};
+}
+
+std::string loop_end_defect(double loop_end_s) {
+  if (std::isfinite(loop_end_s) && loop_end_s >= 0) return {};
+  return broken("finite, at least 0", "the loop ends at ", loop_end_s);
+}
+
+template <typename T>
 std::string keys_defect(const std::string& channel, const Keys<T>& keys) {
   const auto& times = keys.times_s;
   if (times.size() != keys.values.size())
@@ -181,12 +226,18 @@ std::string keys_defect(const std::string& channel, const Keys<T>& keys) {
       return broken(text("above the one before, ", times[i - 1]), channel, " time ", i, " is ", times[i]);
     if (auto d = value_defect(text(channel, " key ", i), keys.values[i]); !d.empty()) return d;
   }
-  return {};
+  return keys.interpolation == Interpolation::CubicSpline ? tangent_defect(channel, keys) : "";
 }
 
 std::string motion_defect(const TransformTrack& track) {
   return first_of({keys_defect("translation", track.translation), keys_defect("rotation", track.rotation),
-                   keys_defect("scale", track.scale)});
+                   keys_defect("scale", track.scale), loop_end_defect(track.loop_end_s)});
+}
+
+std::string motion_defect(const MorphTrack& track) {
+  for (const Keys<double>& keys : track.weights)
+    if (auto d = keys_defect("weight", keys); !d.empty()) return d;
+  return loop_end_defect(track.loop_end_s);
 }
 
 std::string motion_defect(const FlightTrack& track) {
@@ -213,6 +264,15 @@ std::string cone_defect(const Light& light) {
                    range_defect("inner cone angle", light.inner_cone_rad, 0, light.outer_cone_rad)});
 }
 
+std::string attenuation_defect(const Light& light) {
+  const dvec3& a = light.attenuation;
+  if (!(a.x >= 0 && a.y >= 0 && a.z >= 0 && a.x + a.y + a.z > 0 && std::isfinite(a.x + a.y + a.z)))
+    return broken("finite, at least 0 and not all 0", "attenuation ", a.x, " ", a.y, " ", a.z);
+  if (!(light.range_m >= 0 && std::isfinite(light.range_m)))
+    return broken("finite, at least 0", "range ", light.range_m);
+  return {};
+}
+
 std::string shadow_defect(const Light& light) {
   if (light.casts_shadow && light.kind == Light::Kind::Ambient)
     return broken("of a light with a place or direction", "an ambient light casts a shadow");
@@ -228,7 +288,7 @@ std::string defect_of(const Scene& scene, const Light& light) {
   if (aimed && light.direction == dvec3{0, 0, 0}) return broken("not zero", "direction is zero");
   return first_of({index_in("node", light.node, scene.nodes.size(), true), finite("position", light.position),
                    finite("direction", light.direction), color_defect("color", light.color),
-                   cone_defect(light), shadow_defect(light)});
+                   cone_defect(light), attenuation_defect(light), shadow_defect(light)});
 }
 
 std::string defect_of(const Scene& scene, const Camera& camera) {

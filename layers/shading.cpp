@@ -255,6 +255,8 @@ bool is_lit(const Scene& scene, const Part& part) {
 bool casts_shadow(const Scene& scene, const Part& part) {
   const Material* material = material_of(scene, part);
   if (!is_lit(scene, part)) return false;
+  const std::vector<float>& alphas = scene.meshes[part.mesh].alphas;
+  if (std::any_of(alphas.begin(), alphas.end(), [](float a) { return a < 1; })) return false;
   return !material ||
          (material->opacity >= 1 && (material->texture < 0 || !scene.textures[material->texture].has_alpha));
 }

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/scene.h"
 
@@ -13,9 +14,24 @@ std::vector<dvec3> rigid_positions(const Mesh& mesh, const dmat4& world_from_nod
   return world;
 }
 
+bool is_morphed(const Mesh& mesh) { return is_built(Effect::Morphing) && !mesh.morphs.empty(); }
+
+/// own + Σ weight · target.
+std::vector<dvec3> sum_of(const std::vector<vec3>& own, const Mesh& mesh, const std::vector<double>& weights,
+                          std::vector<vec3> MorphTarget::*member) {
+  std::vector<dvec3> sum(own.begin(), own.end());
+  for (std::size_t k = 0; k < mesh.morphs.size(); ++k) {
+    const std::vector<vec3>& added = mesh.morphs[k].*member;
+    if (weights[k] == 0 || added.empty()) continue;
+    for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weights[k] * dvec3(added[i]);
+  }
+  return sum;
+}
+
 /// Linear-blend skinning: p' = Σ wₖ Mₖ p / Σ wₖ. A vertex without weights follows the first joint it names.
-dvec3 skinned_position(const Mesh& mesh, std::size_t vertex, const std::vector<dmat4>& palette) {
-  const dvec4 p(mesh.positions[vertex], 1);
+dvec3 skinned_position(const Mesh& mesh, const dvec3& position, std::size_t vertex,
+                       const std::vector<dmat4>& palette) {
+  const dvec4 p(position, 1);
   const glm::uvec4& joints = mesh.joints[vertex];
   const vec4& weights = mesh.weights[vertex];
   dvec3 sum{0, 0, 0};
@@ -31,6 +47,29 @@ dvec3 skinned_position(const Mesh& mesh, std::size_t vertex, const std::vector<d
 
 }  // namespace
 
+bool deforms(const Scene& scene, const Part& part) {
+  return part.skin >= 0 || (part.mesh >= 0 && !scene.meshes[part.mesh].morphs.empty());
+}
+
+std::vector<double> morph_weights(const SceneFrame& frame, const Part& part) {
+  const Mesh& mesh = frame.scene->meshes.at(part.mesh);
+  std::vector<double> weights;
+  if (part.node >= 0 && static_cast<std::size_t>(part.node) < frame.morph_weights.size())
+    weights = frame.morph_weights[part.node];
+  weights.resize(mesh.morphs.size(), 0);
+  return weights;
+}
+
+std::vector<dvec3> morphed_positions(const SceneFrame& frame, const Part& part) {
+  const Mesh& mesh = frame.scene->meshes.at(part.mesh);
+  return sum_of(mesh.positions, mesh, morph_weights(frame, part), &MorphTarget::positions);
+}
+
+std::vector<dvec3> morphed_normals(const SceneFrame& frame, const Part& part) {
+  const Mesh& mesh = frame.scene->meshes.at(part.mesh);
+  return sum_of(mesh.normals, mesh, morph_weights(frame, part), &MorphTarget::normals);
+}
+
 std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part) {
   if (part.skin < 0) return {};
   const Skin& skin = frame.scene->skins.at(part.skin);
@@ -45,14 +84,21 @@ std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part) {
 std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part) {
   const Mesh& mesh = frame.scene->meshes.at(part.mesh);
   const dmat4 world_from_node = part.node < 0 ? dmat4(1) : frame.world_from_node.at(part.node);
-  if (part.skin < 0) return rigid_positions(mesh, world_from_node);
+  const bool morphed = is_morphed(mesh);
+  if (part.skin < 0 && !morphed) return rigid_positions(mesh, world_from_node);
+  std::vector<dvec3> moved = morphed ? morphed_positions(frame, part) : std::vector<dvec3>();
+  if (part.skin < 0) {
+    for (dvec3& p : moved) p = dvec3(world_from_node * dvec4(p, 1));
+    return moved;
+  }
   TALISMAN_CHECK_EQ(mesh.joints.size(), mesh.positions.size());
   TALISMAN_CHECK_EQ(mesh.weights.size(), mesh.positions.size());
   const std::vector<dmat4> palette = joint_palette(frame, part);
   std::vector<dvec3> world;
   world.reserve(mesh.positions.size());
   for (std::size_t vertex = 0; vertex < mesh.positions.size(); ++vertex)
-    world.push_back(skinned_position(mesh, vertex, palette));
+    world.push_back(
+        skinned_position(mesh, morphed ? moved[vertex] : dvec3(mesh.positions[vertex]), vertex, palette));
   return world;
 }
 

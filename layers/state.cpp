@@ -68,6 +68,17 @@ void forget(LayerState& state) {
   state.nearest_w_m = 0;
 }
 
+/// The morph weights of the parts, 16 to a matrix: they tell apart what matrices tell apart.
+void append_morphs(const SceneFrame& frame, std::span<const int> parts, std::vector<dmat4>& matrices) {
+  for (const int part : parts) {
+    const std::vector<double> weights = morph_weights(frame, frame.scene->parts[part]);
+    for (std::size_t k = 0; k < weights.size(); ++k) {
+      if (k % 16 == 0) matrices.push_back(dmat4(0.0));
+      matrices.back()[static_cast<int>(k % 16 / 4)][static_cast<int>(k % 4)] = weights[k];
+    }
+  }
+}
+
 bool overlaps_display(const RectD& bounds, ivec2 display_px) {
   return !bounds.empty() && bounds.lo.x < display_px.x && bounds.hi.x > 0 && bounds.lo.y < display_px.y &&
          bounds.hi.y > 0;
@@ -170,6 +181,7 @@ void append_part_matrices(const SceneFrame& frame, std::span<const int> parts, s
   const Scene& scene = *frame.scene;
   matrices.reserve(matrices.size() + parts.size());
   for (const int part : parts) matrices.push_back(frame.world_from_node[scene.parts[part].node]);
+  if (is_built(Effect::Morphing) && !frame.morph_weights.empty()) append_morphs(frame, parts, matrices);
   if (!is_built(Effect::Skinning) || scene.skins.empty()) return;
   for (const int part : parts) {
     if (scene.parts[part].skin < 0) continue;

@@ -122,7 +122,8 @@ class FrameCapture {
 /// adds O(triangles · 5); a bound with a surface O(triangles + points · lights).
 LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound& bound, const View& view);
 
-/// World matrices of the nodes of `parts`, joint palettes of skinned ones appended: all that moves them.
+/// World matrices of the nodes of `parts`, morph weights (16 to a matrix) and joint palettes of those that have
+/// them appended: all that moves them.
 std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> parts);
 /// The same, appended.
 void append_part_matrices(const SceneFrame& frame, std::span<const int> parts, std::vector<dmat4>& matrices);

@@ -197,9 +197,13 @@ RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, boo
 
 }  // namespace
 
-Sequence load_with_warnings(const std::string& name_or_path) {
+Sequence load_with_warnings(const std::string& name_or_path, bool strict) {
   Sequence sequence = load_sequence(name_or_path);
   for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& note : sequence.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  if (strict && !sequence.warnings.empty())
+    throw InputError(std::to_string(sequence.warnings.size()) + " warnings, rule with --strict: none",
+                     sequence.file);
   return sequence;
 }
 

@@ -29,6 +29,7 @@ struct CommandLine {
   bool budget_gap = false;
   int threads = 0;  ///< 0: all cores
   bool video = false, separate = false, overlay = false, quality = false, resume = false;
+  bool strict = false;  ///< warnings of the content are errors
 };
 
 struct ResolvedRun {
@@ -37,7 +38,7 @@ struct ResolvedRun {
 };
 
 /// Reads the sequence and says its warnings on stderr, "warning: " before each. Throws InputError.
-Sequence load_with_warnings(const std::string& name_or_path);
+Sequence load_with_warnings(const std::string& name_or_path, bool strict = false);
 
 /// Checks every value and joins it with the sequence's defaults. Throws InputError that names option, value
 /// and rule, or the effect that the run calls for and this build lacks.

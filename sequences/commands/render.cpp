@@ -13,7 +13,7 @@ namespace talisman::sequences {
 
 int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool>& stop, std::ostream& out) {
   using oneapi::tbb::global_control;
-  const Sequence sequence = load_with_warnings(line.sequence);
+  const Sequence sequence = load_with_warnings(line.sequence, line.strict);
   const ResolvedRun resolved = resolve(line, sequence, plan_only);
   std::optional<global_control> threads;
   if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);

@@ -22,7 +22,8 @@ void add_run(CLI::App& command, CommandLine& line) {
       .option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run")
       .option("--size", line.size, "display, WxH pixels")
       .option("--threads", line.threads, "worker threads; 0: all cores. The bytes do not depend on it")
-      .option("--progress", line.progress, kProgressMeaning);
+      .option("--progress", line.progress, kProgressMeaning)
+      .flag("--strict", line.strict, "what the content has and the picture lacks is an error");
 }
 
 void add_policy(CLI::App& command, CommandLine& line) {

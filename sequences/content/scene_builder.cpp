@@ -41,7 +41,7 @@ int add_motion(BuiltScene& built, const std::string& name, const Motion& motion)
   int node = add_node(scene, name, carrier_of(built, motion), motion.rest);
   if (motion.flight) scene.tracks.push_back({node, *motion.flight});
   if (!motion.spin) return node;
-  node = add_node(scene, "spin", node);
+  node = add_node(scene, name, node);
   scene.tracks.push_back({node, *motion.spin});
   return node;
 }
@@ -63,6 +63,7 @@ SharedContent add_content(layers::Scene& scene, const layers::Scene& model, bool
   for (layers::Material material : model.materials) {
     material.texture = shifted(material.texture, scene.textures.size());
     material.texture2 = shifted(material.texture2, scene.textures.size());
+    material.emissive_texture = shifted(material.emissive_texture, scene.textures.size());
     material.two_sided |= two_sided;
     scene.materials.push_back(std::move(material));
   }
@@ -130,11 +131,21 @@ void add_model(BuiltScene& built, const ModelRecipe& recipe) {
   }
 }
 
+/// The texture of a shape runs over each face once: what lies across its edge must not bleed in. Around a
+/// sphere and a cylinder it closes.
+void wrap_around(const ShapeContent& shape, layers::Texture& texture) {
+  using Kind = ShapeContent::Kind;
+  const bool closed = shape.kind == Kind::Sphere || shape.kind == Kind::Cylinder;
+  texture.wrap_u = closed ? layers::Wrap::Repeat : layers::Wrap::Clamp;
+  texture.wrap_v = layers::Wrap::Clamp;
+}
+
 /// Named as textures of models are: where the content lies differs from machine to machine, and results name
 /// it.
-int add_texture(BuiltScene& built, const std::string& file) {
+int add_texture(BuiltScene& built, const std::string& file, const ShapeContent& shape) {
   std::vector<layers::Texture>& textures = built.scene.textures;
   textures.push_back(read_texture(file));
+  wrap_around(shape, textures.back());
   textures.back().name = std::filesystem::path(file).filename().string();
   built.files.push_back(file);
   return static_cast<int>(textures.size()) - 1;
@@ -144,9 +155,9 @@ void add_shape(BuiltScene& built, const ShapeRecipe& recipe) {
   layers::Scene& scene = built.scene;
   layers::Material material = recipe.content.material;
   const ShapeContent& content = recipe.content;
-  if (!content.texture_file.empty()) material.texture = add_texture(built, content.texture_file);
+  if (!content.texture_file.empty()) material.texture = add_texture(built, content.texture_file, content);
   if (!content.second_texture_file.empty())
-    material.texture2 = add_texture(built, content.second_texture_file);
+    material.texture2 = add_texture(built, content.second_texture_file, content);
   const int mesh = static_cast<int>(scene.meshes.size());
   scene.meshes.push_back(shape_mesh(recipe.content));
   scene.meshes.back().name = material.name;

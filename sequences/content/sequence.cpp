@@ -107,6 +107,7 @@ Sequence load_model(const std::string& path) {
       duration > 0 ? std::max(1, static_cast<int>(std::lround(duration * sequence.fps))) : kOrbitFrames;
   add_default_view(model.scene);
   std::vector<layers::LayerSpec> specs = specs_of_model(model.scene, model.layer_tags);
+  sequence.notes = std::move(model.notes);
   BuiltScene built;
   built.scene = std::move(model.scene);
   built.warnings = std::move(model.warnings);

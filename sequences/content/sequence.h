@@ -44,6 +44,7 @@ struct Sequence {
   regulator::RegulatorOptions regulator;  ///< defaults of the sequence; the command line overrides
   std::string warp = "aff";               ///< curve name
   std::vector<std::string> warnings;      ///< missing textures and the like, one line each
+  std::vector<std::string> notes;         ///< what was decided where the model leaves it open
 };
 
 /// Reads a sequence by name ("canyon", also "canyon/background" for a variant file

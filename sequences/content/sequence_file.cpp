@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/sequence_file.h"
 
+#include <algorithm>
 #include <filesystem>
 
 #include "sequences/content/asset_paths.h"
@@ -59,6 +60,17 @@ auto setting(Member Sequence::*member) {
   return at(&File::settings, member);
 }
 
+/// Results go into a folder of this name: it must not lead anywhere else.
+void read_name(const YamlValue& value, File& file) {
+  const std::string name = value.text();
+  const bool leads_away =
+      name.find('/') != std::string::npos || name.find("..") != std::string::npos || name == ".";
+  const bool printable =
+      std::none_of(name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; });
+  if (leads_away || !printable) value.fail("a name: no '/', no '..' and no control characters");
+  file.settings.name = name;
+}
+
 Table<File> film_keys() {
   const auto ignore = [](const YamlValue& value, File&) { value.text(); };
   const auto packages = [](const YamlValue& list, File&) { texts(0).read(list); };
@@ -66,7 +78,7 @@ Table<File> film_keys() {
       .custom("extends", asset().type, ignore, "",
               "another sequence file, of which this one says only what is different: each key at the top "
               "replaces the base's whole value")
-      .key("name", setting(&Sequence::name), text(), "", "shown, and the name of the output folder")
+      .custom("name", text().type, read_name, "", "shown, and the name of the output folder")
       .otherwise("the file's name")
       .key("frames", setting(&Sequence::frames), whole(1, kLongestRun_frames), "frames", "how many")
       .required()

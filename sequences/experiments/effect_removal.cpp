@@ -53,9 +53,19 @@ void flatten_textures(const Scene& scene, Material& material) {
   if (alpha > 0) material.base_color *= vec3(mean) / alpha;
   material.opacity *= alpha;
   material.texture = material.texture2 = -1;
+  material.alpha_cutoff = 0;
+}
+
+void remove_emissive_maps(Scene& scene) {
+  for (Material& material : scene.materials) {
+    const vec4 mean = mean_of(scene, material.emissive_texture);
+    if (material.emissive_texture >= 0 && mean.w > 0) material.emissive *= vec3(mean) / mean.w;
+    material.emissive_texture = -1;
+  }
 }
 
 void remove_textures(Scene& scene) {
+  remove_emissive_maps(scene);
   for (Material& material : scene.materials) flatten_textures(scene, material);
   scene.textures.clear();
 }
@@ -69,7 +79,8 @@ void remove_highlights(Scene& scene) {
 }
 
 void remove_translucency(Scene& scene) {
-  for (Material& material : scene.materials) material.opacity = 1;
+  for (Material& material : scene.materials) material.opacity = 1, material.alpha_cutoff = 0;
+  for (layers::Mesh& mesh : scene.meshes) mesh.alphas.clear();
   for (layers::Texture& texture : scene.textures) {
     if (!texture.has_alpha) continue;
     for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i] = 255;
@@ -142,6 +153,40 @@ void remove_skins(Scene& scene) {
   }
   posed.skins.clear();
   scene = std::move(posed);
+}
+
+/// The shape of the first frame.
+void remove_morphs(Scene& scene) {
+  Scene still = scene;
+  const layers::SceneFrame first = scene.at(0);
+  for (layers::Part& part : still.parts) {
+    if (scene.meshes[part.mesh].morphs.empty()) continue;
+    layers::Mesh mesh = scene.meshes[part.mesh];
+    const std::vector<dvec3> places = layers::morphed_positions(first, part);
+    const std::vector<dvec3> normals = layers::morphed_normals(first, part);
+    for (std::size_t i = 0; i < places.size(); ++i) mesh.positions[i] = vec3(places[i]);
+    for (std::size_t i = 0; i < normals.size(); ++i)
+      if (const double length = glm::length(normals[i]); length > 0)
+        mesh.normals[i] = vec3(normals[i] / length);
+    mesh.morphs.clear();
+    part.mesh = static_cast<int>(still.meshes.size());
+    still.meshes.push_back(std::move(mesh));
+  }
+  for (layers::Mesh& mesh : still.meshes) mesh.morphs.clear();
+  std::erase_if(still.tracks, [](const layers::Track& track) {
+    return std::holds_alternative<layers::MorphTrack>(track.motion);
+  });
+  scene = std::move(still);
+}
+
+/// The brightness that the lamp has at 1 m.
+void remove_falloff(Scene& scene) {
+  for (layers::Light& light : scene.lights) {
+    const dvec3& a = light.attenuation;
+    light.color *= static_cast<float>(1 / (a.x + a.y + a.z));
+    light.attenuation = {1, 0, 0};
+    light.range_m = 0;
+  }
 }
 
 // --- Layers ---
@@ -289,6 +334,12 @@ void remove(Variant& variant, Effect effect) {
       return change_scene(variant, remove_mirrors);
     case Effect::ReflectionLayer:
       return remove_shade_layers(variant, LayerKind::Reflection, &layers::ShadingSpec::reflection);
+    case Effect::EmissiveMap:
+      return change_scene(variant, remove_emissive_maps);
+    case Effect::Morphing:
+      return change_scene(variant, remove_morphs);
+    case Effect::LightFalloff:
+      return change_scene(variant, remove_falloff);
     case Effect::TextureLayers:
       return remove_shade_layers(variant, LayerKind::Texture, &layers::ShadingSpec::textures);
   }

@@ -5,14 +5,17 @@
 ///
 /// `without_effect` changes as little else as it can; what must go along:
 ///
-///   texture             surfaces keep the mean colour and the mean opacity of their textures; mip_filter and
-///                       texture_layers go too
+///   texture             surfaces keep the mean colour and the mean opacity of their textures; mip_filter,
+///                       texture_layers and emissive_map go too
 ///   mip_filter          the finest level of the textures, filtered bilinearly
-///   lighting            materials are unlit: their base colour as it is. Highlights, shadows and the colour
-///                       warp go too, and the shade layers that held them
+///   lighting            materials are unlit: their base colour as it is. Highlights, shadows, emission, the
+///                       falloff of lamps and the colour warp go too, and the shade layers that held them
 ///   specular_highlight  specular_layer goes too
 ///   translucency        opacity is 1 and textures have no alpha. Layers that cast no shadow still cast none
 ///   skinning            parts keep the pose of the first frame and follow the node that carries them
+///   emissive_map        emission has the mean colour of its texture
+///   morphing            parts keep the shape of the first frame
+///   light_falloff       lamps are everywhere as bright as they are at 1 m
 ///   layer_resolution    all sprites, also of shade layers, at the display's resolution
 ///   motion_blur         all shutters closed
 ///   sprite_compression  sprites are kept as they are

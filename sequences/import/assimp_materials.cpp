@@ -7,7 +7,9 @@
 #include <assimp/material.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/picture_kind.h"
 #include "sequences/import/texture_io.h"
+#include "sequences/import/texture_search.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
@@ -17,40 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr float kMaxShininess = 1024;
-constexpr float kDielectric = 0.04f;   // reflectance of common non-metals at normal incidence
-constexpr std::size_t kShortStem = 8;  // DOS names, as 3DS files write them
-
-std::string lower(std::string s) {
-  for (char& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return s;
-}
-
-/// The file in `folder` whose name is `name` but for letter case; else one whose stem is cut to the same 8
-/// characters, if possible with the same extension (gl-117 writes .RGB and ships .tga).
-std::string find_in(const fs::path& folder, const std::string& name, FileUses& files) {
-  files.list(folder.string());
-  const std::string wanted = lower(name),
-                    wanted_stem = lower(fs::path(name).stem().string()).substr(0, kShortStem);
-  const std::string wanted_extension = lower(fs::path(name).extension().string());
-  std::set<std::pair<bool, std::string>> similar;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
-    if (!entry.is_regular_file(error)) continue;
-    const std::string found = lower(entry.path().filename().string());
-    if (found == wanted) return entry.path().string();
-    if (wanted_stem.empty() || lower(entry.path().stem().string()).substr(0, kShortStem) != wanted_stem)
-      continue;
-    const bool other = lower(entry.path().extension().string()) != wanted_extension;
-    similar.emplace(other, entry.path().string());  // sorted: the order in a folder is nobody's choice
-  }
-  return similar.empty() ? std::string() : similar.begin()->second;
-}
+constexpr float kDielectric = 0.04f;  // reflectance of common non-metals at normal incidence
 
 layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
   if (from.mHeight == 0) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(from.pcData);
-    const std::string format = from.achFormatHint[0] ? from.achFormatHint : "png";
-    return read_texture_from_bytes({bytes, from.mWidth}, name, format);
+    return read_texture_from_bytes({bytes, from.mWidth}, name, picture_extension({bytes, from.mWidth}));
   }
   layers::Texture texture;
   texture.name = name;
@@ -105,10 +79,9 @@ float clean(float value, float low, float high, float otherwise) {
   return std::isfinite(value) ? std::clamp(value, low, high) : otherwise;
 }
 
-layers::vec3 to_color(const Import& import, const aiColor4D& c) {
-  const layers::vec3 file(clean(c.r, 0, 100, 0), clean(c.g, 0, 100, 0), clean(c.b, 0, 100, 0));
-  if (import.is_gltf) return file;
-  return {linear_from_srgb(file.x), linear_from_srgb(file.y), linear_from_srgb(file.z)};
+layers::vec3 to_color(const aiColor4D& c) {
+  return {linear_from_srgb(clean(c.r, 0, 100, 0)), linear_from_srgb(clean(c.g, 0, 100, 0)),
+          linear_from_srgb(clean(c.b, 0, 100, 0))};
 }
 
 template <typename T>
@@ -125,9 +98,9 @@ void import_pbr_gloss(const aiMaterial& from, layers::Material& to) {
   to.shininess = std::min(kMaxShininess, 2 / std::pow(roughness, 4.0f) - 2);
 }
 
-void import_phong_gloss(const Import& import, const aiMaterial& from, layers::Material& to) {
+void import_phong_gloss(const aiMaterial& from, layers::Material& to) {
   const float strength = clean(property(from, AI_MATKEY_SHININESS_STRENGTH, 1.0f), 0, 1, 1);
-  to.specular = to_color(import, property(from, AI_MATKEY_COLOR_SPECULAR, aiColor4D(0, 0, 0, 1))) * strength;
+  to.specular = to_color(property(from, AI_MATKEY_COLOR_SPECULAR, aiColor4D(0, 0, 0, 1))) * strength;
   to.shininess = clean(property(from, AI_MATKEY_SHININESS, 0.0f), 0, kMaxShininess, 0);
 }
 
@@ -137,45 +110,55 @@ layers::Material import_material(Import& import, const aiMaterial& from) {
   const aiColor4D diffuse = property(from, AI_MATKEY_COLOR_DIFFUSE, aiColor4D(0.8f, 0.8f, 0.8f, 1));
   const aiColor4D base = property(from, AI_MATKEY_BASE_COLOR, diffuse);
   const bool opaque = std::string(property(from, AI_MATKEY_GLTF_ALPHAMODE, aiString()).C_Str()) == "OPAQUE";
-  to.base_color = to_color(import, base);
+  to.base_color = to_color(base);
   to.opacity = opaque ? 1 : clean(property(from, AI_MATKEY_OPACITY, base.a), 0, 1, 1);
-  to.emissive = to_color(import, property(from, AI_MATKEY_COLOR_EMISSIVE, aiColor4D(0, 0, 0, 1)));
+  to.emissive = to_color(property(from, AI_MATKEY_COLOR_EMISSIVE, aiColor4D(0, 0, 0, 1)));
+  if (from.GetTextureCount(aiTextureType_EMISSIVE) > 0)
+    to.emissive = layers::vec3(0);  // alone it would glow all over
   to.two_sided = property(from, AI_MATKEY_TWOSIDED, 0) != 0;
   to.texture = material_texture(import, from, opaque);
   float roughness = 0;
   if (from.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness) == aiReturn_SUCCESS)
     import_pbr_gloss(from, to);
   else
-    import_phong_gloss(import, from, to);
+    import_phong_gloss(from, to);
   if (to.shininess < 1)
     to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
   return to;
 }
 
-}  // namespace
-
-std::string find_texture(const std::string& model_path, const std::string& written, FileUses& files) {
-  std::string path = written;
-  std::replace(path.begin(), path.end(), '\\', '/');
-  const fs::path folder = fs::absolute(model_path).parent_path();
-  std::error_code error;
-  for (const fs::path& candidate : {folder / path, fs::path(path)}) {
-    files.look_for(candidate.string());
-    if (fs::is_regular_file(candidate, error)) return candidate.string();
-  }
-  const std::string name = fs::path(path).filename().string();
-  for (const fs::path& place : {folder, folder.parent_path() / "textures", folder / "textures"}) {
-    const std::string found = find_in(place, name, files);
-    if (!found.empty()) return found;
-  }
-  return {};
+void warn_of_maps(Import& import, const aiMaterial& from) {
+  static constexpr std::pair<aiTextureType, const char*> kLacking[] = {
+      {aiTextureType_NORMALS, "normal maps are not drawn"},
+      {aiTextureType_HEIGHT, "bump maps are not drawn"},
+      {aiTextureType_SPECULAR, "specular maps are not drawn"},
+      {aiTextureType_EMISSIVE, "emissive maps are not drawn"},
+      {aiTextureType_OPACITY, "opacity maps are not drawn"}};
+  for (const auto& [type, text] : kLacking)
+    if (from.GetTextureCount(type) > 0) import.warn_once(text);
 }
+
+/// An OBJ file without materials gets a grey one from assimp; where the vertices have colours those are meant
+/// alone.
+void whiten_default(Import& import) {
+  for (unsigned i = 0; i < import.from.mNumMeshes; ++i) {
+    const aiMesh* mesh = import.from.mMeshes[i];
+    if (!mesh || !mesh->HasVertexColors(0) || mesh->mMaterialIndex >= import.model.scene.materials.size())
+      continue;
+    layers::Material& material = import.model.scene.materials[mesh->mMaterialIndex];
+    if (material.name == AI_DEFAULT_MATERIAL_NAME) material.base_color = layers::vec3(1);
+  }
+}
+
+}  // namespace
 
 void import_materials(Import& import) {
   for (unsigned i = 0; i < import.from.mNumMaterials; ++i) {
     const aiMaterial* from = import.from.mMaterials[i];
     import.model.scene.materials.push_back(from ? import_material(import, *from) : layers::Material{});
+    if (from) warn_of_maps(import, *from);
   }
+  whiten_default(import);
   if (import.model.scene.materials.empty()) import.model.scene.materials.push_back({});
 }
 

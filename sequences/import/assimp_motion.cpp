@@ -6,6 +6,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/exposure.h"
 
 namespace talisman::sequences {
 
@@ -61,19 +62,26 @@ bool is_finite(const layers::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-/// Half the opening angle. glTF has angles from the axis, all other formats those of the whole cone; assimp
-/// hands on what the file says.
-double cone_angle_rad(const Import& import, float angle_rad) {
-  const double half = import.is_gltf ? angle_rad : angle_rad / 2.0;
+/// Half the opening angle: the formats give the whole cone, and assimp hands on what the file says.
+double cone_angle_rad(float angle_rad) {
+  const double half = angle_rad / 2.0;
   return std::isfinite(half) ? std::clamp(half, 0.0, kWidestCone_rad) : kWidestCone_rad;
 }
 
 void import_cone(Import& import, const aiLight& from, layers::Light& to) {
-  to.outer_cone_rad = cone_angle_rad(import, from.mAngleOuterCone);
-  to.inner_cone_rad = std::min(cone_angle_rad(import, from.mAngleInnerCone), to.outer_cone_rad);
+  to.outer_cone_rad = cone_angle_rad(from.mAngleOuterCone);
+  to.inner_cone_rad = std::min(cone_angle_rad(from.mAngleInnerCone), to.outer_cone_rad);
   if (to.outer_cone_rad > 0) return;
   import.warn("light '" + to.name + "' is a spot without an angle; it shines into a half-space");
   to.outer_cone_rad = to.inner_cone_rad = kWidestCone_rad;
+}
+
+/// assimp says 0, 1, 0 where the file says nothing.
+void import_attenuation(const aiLight& from, layers::Light& to) {
+  const layers::dvec3 given(from.mAttenuationConstant, from.mAttenuationLinear, from.mAttenuationQuadratic);
+  const bool usable =
+      given.x >= 0 && given.y >= 0 && given.z >= 0 && given.x + given.y + given.z > 0 && is_finite(given);
+  if (usable && given != layers::dvec3(0, 1, 0)) to.attenuation = given;
 }
 
 /// The light, or nothing when its kind cannot be kept.
@@ -89,10 +97,12 @@ bool import_light(Import& import, const aiLight& from, layers::Light& to) {
       break;
     case aiLightSource_SPOT:
       to.kind = layers::Light::Kind::Spot;
+      import_attenuation(from, to);
       import_cone(import, from, to);
       break;
     case aiLightSource_POINT:
       to.kind = layers::Light::Kind::Point;
+      import_attenuation(from, to);
       break;
     case aiLightSource_AMBIENT:
       to.kind = layers::Light::Kind::Ambient;
@@ -151,6 +161,9 @@ void import_lights(Import& import) {
     if (import.from.mLights[i] && import_light(import, *import.from.mLights[i], light))
       lights.push_back(light);
   }
+  if (std::any_of(lights.begin(), lights.end(),
+                  [](const layers::Light& l) { return l.attenuation != layers::dvec3(1, 0, 0); }))
+    return expose_lights(import.model);
   float brightest = 1;
   for (const layers::Light& light : lights)
     for (int k = 0; k < 3; ++k) brightest = std::max(brightest, light.color[k]);

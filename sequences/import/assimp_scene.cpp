@@ -5,12 +5,15 @@
 #include <cmath>
 #include <filesystem>
 
-#include <assimp/DefaultIOSystem.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/Importer.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
+
+#include "sequences/import/file_frame.h"
+#include "sequences/import/recorded_files.h"
+#include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 
@@ -65,18 +68,40 @@ void import_parts(Import& import, const aiNode& node, int index, const std::stri
   }
 }
 
+/// AC3D calls what has no name "ACWorld_0", "ACGroup_3" and so on, and other files say nothing.
+bool tells_nothing(const std::string& name) {
+  if (name.empty()) return true;
+  const std::size_t digits = name.find_last_not_of("0123456789");
+  if (name.rfind("AC", 0) != 0 || digits + 1 >= name.size() || digits < 3 || name[digits] != '_')
+    return false;
+  return std::all_of(name.begin() + 2, name.begin() + static_cast<std::ptrdiff_t>(digits),
+                     [](unsigned char c) { return std::isalpha(c) != 0; });
+}
+
+/// The node's name; else its mesh's, or of the root the file's.
+std::string telling_name(const Import& import, const aiNode& node) {
+  const std::string own = text(node.mName);
+  if (!tells_nothing(own)) return own;
+  if (node.mNumMeshes > 0 && node.mMeshes[0] < import.from.mNumMeshes &&
+      import.from.mMeshes[node.mMeshes[0]]) {
+    const std::string mesh = text(import.from.mMeshes[node.mMeshes[0]]->mName);
+    if (!tells_nothing(mesh)) return mesh;
+  }
+  return node.mParent ? own : std::filesystem::path(import.path).stem().string();
+}
+
 void import_nodes(Import& import, const aiNode* node, int parent, const std::string& parent_path, int depth) {
   if (!node) return import.warn("a node is missing in the file's tree");
   if (depth > kMaxDepth) throw InputError("nodes are nested deeper than " + std::to_string(kMaxDepth));
   auto& nodes = import.model.scene.nodes;
   const int index = static_cast<int>(nodes.size());
-  const std::string name = text(node->mName);
+  const std::string name = telling_name(import, *node);
   const std::string path = parent_path.empty() ? name : parent_path + "/" + name;
   bool sheared = false;
   nodes.push_back({name, parent, decomposed(to_matrix(node->mTransformation), sheared)});
   if (sheared) import.warn("node '" + path + "' is sheared or flat; only its scale is kept");
   import.node_of[node] = index;
-  import.node_named.emplace(name, index);
+  import.node_named.emplace(text(node->mName), index);
   import_layer_tag(import, *node, index);
   import_parts(import, *node, index, path);
   for (unsigned k = 0; k < node->mNumChildren; ++k)
@@ -106,7 +131,8 @@ layers::Mesh import_mesh(const aiMesh& from) {
   if (from.HasVertexColors(0))
     for (unsigned i = 0; i < n; ++i) {
       const aiColor4D& c = from.mColors[0][i];
-      mesh.colors.push_back({std::max(0.0f, c.r), std::max(0.0f, c.g), std::max(0.0f, c.b)});
+      mesh.colors.push_back({linear_from_srgb(std::max(0.0f, c.r)), linear_from_srgb(std::max(0.0f, c.g)),
+                             linear_from_srgb(std::max(0.0f, c.b))});
     }
   for (unsigned f = 0; f < from.mNumFaces; ++f)
     if (from.mFaces[f].mNumIndices == 3)
@@ -204,27 +230,39 @@ constexpr unsigned kSteps = aiProcess_Triangulate | aiProcess_JoinIdenticalVerti
                             aiProcess_ValidateDataStructure | aiProcess_LimitBoneWeights |
                             aiProcess_GenUVCoords | aiProcess_TransformUVCoords;
 
-/// The file system as assimp sees it, with a record of what it asked for.
-class RecordedFiles : public Assimp::DefaultIOSystem {
- public:
-  explicit RecordedFiles(FileUses& files) : files_(files) {}
-  bool Exists(const char* file) const override {
-    files_.look_for(file);
-    return DefaultIOSystem::Exists(file);
+/// What the loader found and the steps below take away, and what is not drawn at all.
+std::vector<std::string> losses_of(const aiScene& scene) {
+  std::set<std::string> losses;
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    const aiMesh* mesh = scene.mMeshes[i];
+    if (!mesh) continue;
+    if (mesh->mPrimitiveTypes & aiPrimitiveType_POINT) losses.insert("points are not drawn");
+    if (mesh->mPrimitiveTypes & aiPrimitiveType_LINE) losses.insert("lines are not drawn");
+    if (mesh->mNumAnimMeshes > 0)
+      losses.insert("morph targets of '" + text(mesh->mName) + "' are not played");
   }
-  Assimp::IOStream* Open(const char* file, const char* mode) override {
-    files_.look_for(file);
-    return DefaultIOSystem::Open(file, mode);
-  }
+  return {losses.begin(), losses.end()};
+}
 
- private:
-  FileUses& files_;
-};
+/// All nodes below one that turns and scales the file's axes and units to ours; nothing where they are ours.
+int import_frame(Import& import, const FileFrame& frame) {
+  const layers::Transform own;
+  if (frame.transform.rotation == own.rotation && frame.transform.scale == own.scale &&
+      frame.transform.translation == own.translation)
+    return -1;
+  import.model.scene.nodes.push_back(
+      {std::filesystem::path(import.path).stem().string(), -1, frame.transform});
+  return 0;
+}
 
-bool is_gltf(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".gltf" || extension == ".glb" || extension == ".vrm";
+const aiScene* read_file(Assimp::Importer& importer, const std::string& path,
+                         std::vector<std::string>& losses) {
+  const aiScene* from = importer.ReadFile(path, 0);
+  if (from) losses = losses_of(*from);
+  if (from) from = importer.ApplyPostProcessing(kSteps);
+  if (from && from->mRootNode) return from;
+  const std::string why = importer.GetErrorString();
+  throw InputError("cannot be read as a model: " + (why.empty() ? "no reader takes it" : why));
 }
 
 }  // namespace
@@ -235,13 +273,12 @@ ImportedModel read_with_assimp(const std::string& path) {
   Assimp::Importer importer;
   set_options(importer);
   importer.SetIOHandler(new RecordedFiles(files));  // it belongs to the importer
-  const aiScene* from = importer.ReadFile(path, kSteps);
-  if (!from || !from->mRootNode) {
-    const std::string why = importer.GetErrorString();
-    throw InputError("cannot be read as a model: " + (why.empty() ? "no reader takes it" : why));
-  }
-  Import import(*from, path, is_gltf(path), files);
-  import_nodes(import, from->mRootNode, -1, "", 0);
+  const layers::dvec3 origin = use_local_origin(importer, path, files);
+  std::vector<std::string> losses;
+  const aiScene* from = read_file(importer, path, losses);
+  Import import(*from, path, files);
+  import.model.warnings = losses;
+  import_nodes(import, from->mRootNode, import_frame(import, file_frame(*from, origin)), "", 0);
   import_materials(import);
   import_meshes(import);
   drop_empty_parts(import.model.scene);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// talisman_import PATH SECONDS MEGABYTES: reads a model with assimp and writes it to stdout as a scene
+// talisman_import PATH SECONDS MEGABYTES: reads a model (glTF 2 by a reader made for it, all others with assimp) and writes it to stdout as a scene
 // stream. Started by import_model; limits itself first, so that nothing in the file can take more than that.
 
 #include <csignal>
@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/gltf_scene.h"
 #include "sequences/import/scene_stream.h"
 
 namespace {
@@ -38,6 +39,12 @@ void limit_ourselves(int seconds, long megabytes) {
 #endif
 }
 
+/// glTF 1 has the same extensions, and assimp reads it.
+talisman::sequences::ImportedModel read_model(const std::string& path) {
+  return talisman::sequences::is_gltf2(path) ? talisman::sequences::read_gltf(path)
+                                             : talisman::sequences::read_with_assimp(path);
+}
+
 int fail(const char* what) {
   std::fprintf(stderr, "error: %s\n", what);
   return ExitCode::kBadInput;
@@ -49,7 +56,7 @@ int main(int argc, char** argv) {
   if (argc != 4) return fail("usage: talisman_import PATH SECONDS MEGABYTES (started by talisman)");
   limit_ourselves(std::atoi(argv[2]), std::atol(argv[3]));
   try {
-    const auto bytes = talisman::sequences::bytes_from_model(talisman::sequences::read_with_assimp(argv[1]));
+    const auto bytes = talisman::sequences::bytes_from_model(read_model(argv[1]));
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
       return fail("the reader could not hand its result over");
     _exit(ExitCode::kSuccess);  // libraries of readers are not trusted to end cleanly either

@@ -1,21 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Model files through assimp, in a child process (talisman_import, beside the tool): a hostile file can
+/// Model files in a child process (talisman_import, beside the tool): a hostile file can
 /// crash, hang or exhaust nothing but its reader. The child sends the model as a byte stream
 /// (scene_stream.h); the parent checks every length and every index again.
 ///
 /// What is made of a file:
-///   geometry   triangles with smooth normals where the file has none; points and lines are dropped
-///   colours    linear light; glTF is linear already, other formats are taken as sRGB
+///   readers    glTF 2 by one made for it (gltf_scene.h), everything else by assimp
+///   geometry   triangles; where the file has no normals flat ones (glTF) or smooth ones (others); points and
+///              lines are not drawn, which is said
+///   colours    linear light; glTF is linear already, other formats are taken as sRGB, vertex colours too
+///   places     metres, y up: FBX axes and units are applied; an OBJ far from its origin is read around a
+///              local one (file_frame.h)
 ///   PBR        base colour as it is; specular = mix(0.04, base, metallic) · (1 − roughness), Blinn-Phong
-///              exponent 2 / roughness⁴ − 2, at most 1024
-///   textures   embedded, or looked for as written, beside the model, in ../textures, in any letter case and
-///              by 8.3-truncated name; one that is not found is a warning and a plain colour
-///   motion     the first animation, ticks → seconds, looping
+///              exponent 2 / roughness⁴ − 2, at most 1024; metallic-roughness maps as their mean; emissive maps;
+///              normal and occlusion maps are not drawn, which is said
+///   textures   embedded, or found by the rules of texture_search.h; one that is not found is a warning and a
+///              plain colour
+///   motion     the first animation, ticks → seconds, looping; morph targets of glTF
 ///   lights     directional, point, spot (angles of glTF are from the axis, those of other formats of the
-///              whole cone), ambient; if one is brighter than 1 all are divided by the brightest, for files
-///              give candela or lux
+///              whole cone), ambient. Where lights fade with distance one exposure for all (exposure.h); where
+///              none does and one is brighter than 1 all are divided by the brightest
 ///   layers     the key "layer" of a glTF node's extras is kept as a LayerTag
 
 #include <cstdint>
@@ -41,7 +46,8 @@ struct LayerTag {
 
 struct ImportedModel {
   layers::Scene scene;
-  std::vector<std::string> warnings;  ///< missing textures and what else could not be kept
+  std::vector<std::string> warnings;  ///< missing textures and what else the picture will lack
+  std::vector<std::string> notes;     ///< what was decided where the file leaves it open
   std::vector<LayerTag> layer_tags;
   std::vector<FileUse> files = {};  ///< all that the reader asked of the file system
 };

@@ -123,16 +123,25 @@ class Reader {
 template <typename T, typename Struct>
 concept Of = std::is_same_v<std::remove_const_t<T>, Struct>;
 
+template <typename Stream, Of<layers::MorphTarget> T>
+void fields(Stream& s, T& m) {
+  s.array(m.positions);
+  s.array(m.normals);
+}
+
 template <typename Stream, Of<layers::Mesh> T>
 void fields(Stream& s, T& m) {
   s.text(m.name);
   s.array(m.positions);
   s.array(m.normals);
   s.array(m.uvs);
+  s.array(m.emissive_uvs);
   s.array(m.colors);
+  s.array(m.alphas);
   s.array(m.indices);
   s.array(m.joints);
   s.array(m.weights);
+  s.list(m.morphs);
 }
 
 template <typename Stream, Of<layers::Texture> T>
@@ -142,6 +151,10 @@ void fields(Stream& s, T& t) {
   s.value(t.height);
   s.array(t.rgba);
   s.flag(t.has_alpha);
+  s.choice(t.wrap_u, layers::Wrap::Mirror);
+  s.choice(t.wrap_v, layers::Wrap::Mirror);
+  s.flag(t.nearest);
+  s.flag(t.finest);
 }
 
 template <typename Stream, Of<layers::Material> T>
@@ -155,6 +168,8 @@ void fields(Stream& s, T& m) {
   s.value(m.specular);
   s.value(m.shininess);
   s.value(m.emissive);
+  s.value(m.emissive_texture);
+  s.value(m.alpha_cutoff);
   s.value(m.reflectivity);
   s.flag(m.two_sided);
   s.flag(m.unlit);
@@ -174,13 +189,16 @@ void fields(Stream& s, T& node) {
   s.value(node.local.translation);
   s.value(node.local.rotation);
   s.value(node.local.scale);
+  s.array(node.morph_weights);
 }
 
 template <typename Stream, typename K>
 void keys(Stream& s, K& k) {
   s.array(k.times_s);
   s.array(k.values);
-  s.choice(k.interpolation, layers::Interpolation::CatmullRom);
+  s.choice(k.interpolation, layers::Interpolation::CubicSpline);
+  s.array(k.in_tangents);
+  s.array(k.out_tangents);
 }
 
 template <typename Stream, Of<layers::TransformTrack> T>
@@ -189,6 +207,19 @@ void fields(Stream& s, T& track) {
   keys(s, track.rotation);
   keys(s, track.scale);
   s.flag(track.loop);
+  s.value(track.loop_end_s);
+}
+
+template <typename Stream, Of<layers::Keys<double>> T>
+void fields(Stream& s, T& k) {
+  keys(s, k);
+}
+
+template <typename Stream, Of<layers::MorphTrack> T>
+void fields(Stream& s, T& track) {
+  s.list(track.weights);
+  s.flag(track.loop);
+  s.value(track.loop_end_s);
 }
 
 template <typename Stream, Of<layers::FlightTrack> T>
@@ -204,21 +235,22 @@ void fields(Stream& s, T& track) {
   s.value(track.rate_rad_per_s);
 }
 
-enum class MotionKind : std::uint8_t { Transform, Flight, Spin };
+enum class MotionKind : std::uint8_t { Transform, Flight, Spin, Morph };
 
 void fields(Writer& s, const layers::Track& track) {
   s.value(track.node);
-  s.choice(static_cast<MotionKind>(track.motion.index()), MotionKind::Spin);
+  s.choice(static_cast<MotionKind>(track.motion.index()), MotionKind::Morph);
   std::visit([&](const auto& motion) { fields(s, motion); }, track.motion);
 }
 
 void fields(Reader& s, layers::Track& track) {
   s.value(track.node);
   MotionKind kind{};
-  s.choice(kind, MotionKind::Spin);
+  s.choice(kind, MotionKind::Morph);
   if (kind == MotionKind::Transform) fields(s, track.motion.emplace<layers::TransformTrack>());
   if (kind == MotionKind::Flight) fields(s, track.motion.emplace<layers::FlightTrack>());
   if (kind == MotionKind::Spin) fields(s, track.motion.emplace<layers::SpinTrack>());
+  if (kind == MotionKind::Morph) fields(s, track.motion.emplace<layers::MorphTrack>());
 }
 
 template <typename Stream, Of<layers::Light> T>
@@ -231,6 +263,8 @@ void fields(Stream& s, T& light) {
   s.value(light.color);
   s.value(light.inner_cone_rad);
   s.value(light.outer_cone_rad);
+  s.value(light.attenuation);
+  s.value(light.range_m);
   s.flag(light.casts_shadow);
   s.value(light.shadow.resolution_px);
   s.value(light.shadow.bias_texels);
@@ -295,6 +329,7 @@ template <typename Stream, Of<ImportedModel> T>
 void fields(Stream& s, T& model) {
   fields(s, model.scene);
   s.list(model.warnings);
+  s.list(model.notes);
   s.list(model.layer_tags);
   s.list(model.files);
 }

@@ -73,8 +73,11 @@ layers::Texture read_texture(const std::string& path) {
 layers::Texture read_texture_from_bytes(std::span<const std::uint8_t> bytes, const std::string& name,
                                         const std::string& format) {
   OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  const OIIO::ImageSpec config = straight_alpha();
-  return read_open_image(OIIO::ImageInput::open("embedded." + format, &config, &memory), name);
+  OIIO::ImageSpec config = straight_alpha();
+  // Given as an argument beside a configuration, 2.4 forgets the proxy; in the configuration it is kept.
+  OIIO::Filesystem::IOProxy* proxy = &memory;
+  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
+  return read_open_image(OIIO::ImageInput::open("embedded." + format, &config), name);
 }
 
 }  // namespace talisman::sequences

@@ -63,6 +63,31 @@ void add_pane(Scene& scene) {
 }
 
 /// The lamp sways, the eye goes by, the pane (the last node) crosses quickly enough to be blurred.
+/// A square that glows and, in 2 s, bends its upper half upwards.
+void add_sail(Scene& scene) {
+  Node stand;
+  stand.name = "sail";
+  stand.local.translation = {-0.4, 2, -1};
+  stand.morph_weights = {0};
+  scene.nodes.push_back(stand);
+  const int node = static_cast<int>(scene.nodes.size()) - 1;
+  scene.meshes.push_back(quad_mesh(0.8));
+  layers::Mesh& mesh = scene.meshes.back();
+  layers::MorphTarget taller;
+  for (const vec3& p : mesh.positions) taller.positions.push_back({0, p.y > 0 ? 0.4f : 0, 0});
+  mesh.morphs = {taller};
+  scene.materials.emplace_back();
+  scene.materials.back().name = "sail";
+  scene.materials.back().emissive = vec3(0.5f);
+  scene.materials.back().emissive_texture = 0;
+  scene.materials.back().two_sided = true;
+  layers::MorphTrack grow;
+  grow.weights = {{{0, 2}, {0, 1}, layers::Interpolation::Linear}};
+  scene.tracks.push_back({node, grow});
+  scene.parts.push_back({"sail", node, static_cast<int>(scene.meshes.size()) - 1,
+                         static_cast<int>(scene.materials.size()) - 1, -1});
+}
+
 void add_motion(Scene& scene) {
   layers::TransformTrack cross;
   cross.translation = {{0, 0.25}, {{1.4, 0.9, 1}, {-0.1, 0.9, 1}}, layers::Interpolation::Linear};
@@ -105,12 +130,15 @@ sequences::Variant every_effect(int frames) {
   room.scene.materials[1].base_color = {0.8f, 0.25f, 0.2f};
   room.scene.materials[1].specular = vec3(0.6f);
   room.scene.materials[1].shininess = 40;
+  room.scene.lights[0].attenuation = {0.6, 0, 0.02};
   add_bar(room.scene);
+  add_sail(room.scene);
   add_pane(room.scene);
   add_motion(room.scene);
   room.specs[0].group = layers::OrderGroup::Background;
   room.specs[0].shading.shadows->resolution_scale = 0.5;
   room.specs.push_back({"bar", {"bar"}, layers::OrderGroup::Normal, {}});
+  room.specs.push_back({"sail", {"sail"}, layers::OrderGroup::Normal, {}});
   room.specs.push_back({"pane", {"pane"}, layers::OrderGroup::Normal, {}});
   room.specs.back().preferences.motion_blur = 0.5;
 

@@ -69,10 +69,11 @@ TEST_P(WithoutEffect, IsNotCalledForAnyMore) {
 TEST_P(WithoutEffect, NothingElseGoesThanTheHeaderSays) {
   // What the four shade layers and the surfaces under them cannot do without one another.
   const std::map<Effect, std::set<Effect>> also = {
-      {Effect::Texture, {Effect::MipFilter, Effect::TextureLayers}},
+      {Effect::Texture, {Effect::MipFilter, Effect::TextureLayers, Effect::EmissiveMap}},
       {Effect::Lighting,
        {Effect::SpecularHighlight, Effect::ColorWarp, Effect::ShadowMap, Effect::ShadowLayer,
-        Effect::SpecularLayer, Effect::LayerResolution}},  // the shadow's was the only resolution of its own
+        Effect::SpecularLayer, Effect::EmissiveMap, Effect::LightFalloff,
+        Effect::LayerResolution}},  // the shadow's was the only resolution of its own
       {Effect::SpecularHighlight, {Effect::SpecularLayer}},
       {Effect::ShadowMap, {Effect::ShadowLayer, Effect::LayerResolution}},
       {Effect::ShadowLayer, {Effect::SpecularLayer, Effect::TextureLayers, Effect::LayerResolution}},

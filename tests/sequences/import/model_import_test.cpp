@@ -7,6 +7,7 @@
 
 #include "sequences/content/sequence.h"
 #include "sequences/import/model_import.h"
+#include "tests/sequences/import/gltf_builder.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
@@ -14,6 +15,7 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
+using tests::base64;
 using tests::message_of;
 using tests::TemporaryFolder;
 
@@ -28,19 +30,6 @@ std::string square_obj(const std::string& head = "") {
 /// 2 × 1 pixels: red, green (binary PPM).
 std::string red_green_ppm() {
   return std::string("P6\n2 1\n255\n") + '\xff' + '\0' + '\0' + '\0' + '\xff' + '\0';
-}
-
-std::string base64(const std::string& bytes) {
-  static const char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    unsigned v = 0;
-    for (std::size_t k = 0; k < 3; ++k)
-      v = v << 8 | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0u);
-    for (int k = 0; k < 4; ++k)
-      text += i + static_cast<std::size_t>(k) <= bytes.size() ? kDigits[v >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
 }
 
 template <typename T>
@@ -281,6 +270,38 @@ TEST(ImportModel, MemoryOfTheReaderIsLimited) {
   EXPECT_THROW(import_model(file, {.seconds = 60, .megabytes = 64}), InputError);
 }
 #endif
+
+TEST(ImportModel, MissingTextureIsNotReplacedByASimilarOne) {
+  // Same first 8 letters, but a name of more than 8 is not one that DOS cut.
+  const TemporaryFolder folder;
+  folder.write("textures/texture_metal.ppm", red_green_ppm());
+  folder.write("textures/wood.txt", "no picture");
+  for (const char* written : {"texture_wood.ppm", "wood.ppm"}) {
+    folder.write("square.mtl", std::string("newmtl paint\nmap_Kd ") + written + "\n");
+    const ImportedModel model = import_model(folder.write("square.obj", square_obj("mtllib square.mtl\n")));
+    ASSERT_EQ(model.warnings.size(), 1u) << written;
+    EXPECT_THAT(model.warnings[0], HasSubstr("is missing"));
+  }
+}
+
+TEST(ImportModel, VertexColoursOfObjAreSrgbAndAlone) {
+  const TemporaryFolder folder;
+  const ImportedModel model = import_model(
+      folder.write("c.obj", "v 0 0 0 0.5 0.25 0\nv 1 0 0 0.5 0.25 0\nv 0 1 0 0.5 0.25 0\nf 1 2 3\n"));
+  const layers::Part& part = model.scene.parts.at(0);
+  EXPECT_NEAR(model.scene.meshes[part.mesh].colors.at(0).x, 0.21404, 1e-4);  // 0.5 in sRGB
+  EXPECT_EQ(model.scene.materials[part.material].base_color, layers::vec3(1));
+}
+
+TEST(ImportModel, FarOriginKeepsSmallSizes) {
+  const TemporaryFolder folder;
+  const ImportedModel model = import_model(folder.write(
+      "utm.obj", "v 500000.1 4600000.2 0\nv 500000.3 4600000.2 0\nv 500000.1 4600000.4 0\nf 1 2 3\n"));
+  const auto world = layers::world_positions(model.scene.at(0), model.scene.parts.at(0));
+  double wide = 0;
+  for (const layers::dvec3& p : world) wide = std::max(wide, p.x);
+  EXPECT_NEAR(wide, 500000.3, 1e-6);  // a float at 5e5 resolves 0.03
+}
 
 TEST(LoadModel, BareModelIsFramedAtAnyUnit) {
   for (const double unit : {1e-4, 1.0, 1e6}) {

@@ -61,6 +61,11 @@ class EffectTable : public ::testing::Test {
   std::string missing_;
 };
 
+/// What only models of other programs bring.
+const std::vector<Row> kOfModels = {{"emissive_map", kNot, "no lit material has an emissive texture"},
+                                    {"morphing", kNot, "no part has morph targets"},
+                                    {"light_falloff", kNot, "no light fades with distance"}};
+
 /// The stage, factored or not: it differs in the resolution of its layers and from the shadow layers on.
 std::vector<Row> stage_table(const Row& resolution, const std::vector<Row>& shade_layers) {
   std::vector<Row> rows{
@@ -77,6 +82,7 @@ std::vector<Row> stage_table(const Row& resolution, const std::vector<Row>& shad
       {"color_warp", kCalled, "part 'wall' and light 'spot' move against each other"},
       {"shadow_map", kCalled, "light 'spot': drawn again when light or casters move"}};
   rows.insert(rows.end(), shade_layers.begin(), shade_layers.end());
+  rows.insert(rows.end(), kOfModels.begin(), kOfModels.end());
   return rows;
 }
 
@@ -127,7 +133,10 @@ std::vector<Row> plain_rows(const Row& texture, const Row& lighting, const Row& 
           {"specular_layer", kNot, "no lit material has specular > 0"},
           {"reflection_map", kNot, "no material has reflectivity > 0"},
           {"reflection_layer", kNot, "no material has reflectivity > 0"},
-          {"texture_layers", kNot, "no material has a second texture"}};
+          {"texture_layers", kNot, "no material has a second texture"},
+          kOfModels[0],
+          kOfModels[1],
+          kOfModels[2]};
 }
 
 TEST_F(EffectTable, OfTheCarouselCallsForOrderAndLight) {

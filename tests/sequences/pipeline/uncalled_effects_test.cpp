@@ -198,6 +198,9 @@ Numbers numbers_of(const WholeRun& run, Effect effect) {
       return of_shade_layers(run, LayerKind::Reflection);
     case Effect::TextureLayers:
       return of_shade_layers(run, LayerKind::Texture);
+    case Effect::EmissiveMap:
+    case Effect::Morphing:
+    case Effect::LightFalloff:
     case Effect::SpecularHighlight:
     case Effect::Translucency:
     case Effect::LayerResolution:

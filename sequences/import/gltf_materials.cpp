@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "sequences/import/gltf_scene.h"
+#include "sequences/import/picture_kind.h"
+#include "sequences/import/texture_io.h"
+#include "sequences/import/texture_search.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+constexpr int kNearest = 9728, kNearestMipNearest = 9984, kLinearMipNearest = 9985, kNearestMipLinear = 9986;
+constexpr int kLinear = 9729, kClampToEdge = 33071, kMirroredRepeat = 33648;
+constexpr double kLeastRoughness = 0.05;
+constexpr double kMaxShininess = 1024;
+
+layers::vec3 color_of(const std::vector<double>& c) {
+  return {static_cast<float>(std::max(0.0, c[0])), static_cast<float>(std::max(0.0, c[1])),
+          static_cast<float>(std::max(0.0, c[2]))};
+}
+
+layers::Wrap wrap_of(const Json& sampler, const char* key) {
+  const int mode = index_of(sampler, key);
+  return mode == kClampToEdge      ? layers::Wrap::Clamp
+         : mode == kMirroredRepeat ? layers::Wrap::Mirror
+                                   : layers::Wrap::Repeat;
+}
+
+void apply_sampler(const GltfImport& import, const Json& from, layers::Texture& texture) {
+  const int index = index_of(from, "sampler");
+  if (index < 0) return;
+  const Json& sampler = item_of(import.file, "samplers", index);
+  texture.wrap_u = wrap_of(sampler, "wrapS");
+  texture.wrap_v = wrap_of(sampler, "wrapT");
+  texture.nearest = index_of(sampler, "magFilter") == kNearest;
+  const int minified = index_of(sampler, "minFilter");
+  texture.finest = minified == kNearest || minified == kLinear;
+}
+
+/// The image of a texture: a WebP one where the texture has it, else its own; -1: none that is read.
+int image_of(const Json& texture) {
+  const Json* webp = extension_of(texture, "EXT_texture_webp");
+  const int image = webp ? index_of(*webp, "source") : -1;
+  return image >= 0 ? image : index_of(texture, "source");
+}
+
+layers::Texture read_image(GltfImport& import, int index) {
+  const Json& image = item_of(import.file, "images", index);
+  const std::string uri = text_of(image, "uri"), own = text_of(image, "name");
+  const std::string name = own.empty() ? "image " + std::to_string(index) : own;
+  if (uri.empty()) {
+    const auto bytes = bytes_of_view(import.file, index_of(image, "bufferView"));
+    return read_texture_from_bytes(bytes, name, picture_extension(bytes));
+  }
+  if (uri.rfind("data:", 0) == 0) {
+    const auto bytes = bytes_of_uri(import.file, uri);
+    return read_texture_from_bytes(bytes, name, picture_extension(bytes));
+  }
+  const std::string found = find_texture(import.file.path, percent_decoded(uri), import.file.uses);
+  if (found.empty()) throw InputError("is missing");
+  layers::Texture texture = read_texture(found);
+  texture.name = std::filesystem::path(found).filename().string();
+  return texture;
+}
+
+std::string name_of_image(const GltfImport& import, const Json& texture) {
+  const int index = image_of(texture);
+  if (index < 0) return "of another format";
+  const Json& image = item_of(import.file, "images", index);
+  const std::string uri = text_of(image, "uri");
+  const std::string name = text_of(image, "name", "image " + std::to_string(index));
+  return uri.empty() || uri.rfind("data:", 0) == 0 ? name : percent_decoded(uri);
+}
+
+/// The texture, or an empty one and a warning.
+layers::Texture read_gltf_texture(GltfImport& import, int index) {
+  const Json& from = item_of(import.file, "textures", index);
+  layers::Texture texture;
+  try {
+    if (image_of(from) < 0) throw InputError("has no source that is read");
+    texture = read_image(import, image_of(from));
+  } catch (const InputError& e) {
+    import.warn("texture '" + name_of_image(import, from) + "': " + e.what() + "; a plain colour is used");
+    return {};
+  }
+  apply_sampler(import, from, texture);
+  return texture;
+}
+
+GltfCoordinates coordinates_of(const Json& info) {
+  GltfCoordinates coordinates;
+  coordinates.set = std::max(0, index_of(info, "texCoord"));
+  const Json* transform = extension_of(info, "KHR_texture_transform");
+  if (!transform) return coordinates;
+  const auto offset = numbers_of(*transform, "offset", 2, {0, 0}),
+             scale = numbers_of(*transform, "scale", 2, {1, 1});
+  for (int k = 0; k < 2; ++k) coordinates.offset[k] = offset[k], coordinates.scale[k] = scale[k];
+  coordinates.rotation_rad = number_of(*transform, "rotation", 0);
+  if (const int set = index_of(*transform, "texCoord"); set >= 0) coordinates.set = set;
+  return coordinates;
+}
+
+void make_opaque(layers::Texture& texture) {
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i] = 255;
+  texture.has_alpha = false;
+}
+
+/// Reads textures, each of them once, with and without its alpha.
+class Textures {
+ public:
+  explicit Textures(GltfImport& import) : import_(import) {}
+
+  /// Index into Scene::textures; -1: none, or none that can be read.
+  int of(const Json& info, bool opaque) {
+    const int index = index_of(info, "index");
+    if (index < 0) return -1;
+    const auto [entry, is_new] = found_.emplace(std::pair(index, opaque), -1);
+    if (!is_new) return entry->second;
+    layers::Texture texture = read(index);
+    if (texture.rgba.empty()) return -1;
+    if (opaque) make_opaque(texture);
+    import_.model.scene.textures.push_back(std::move(texture));
+    return entry->second = static_cast<int>(import_.model.scene.textures.size()) - 1;
+  }
+
+  /// The mean of one channel, 0 … 1, as numbers and not as light; 1 where there is no texture.
+  double mean_of(const Json& info, int channel) {
+    const int index = index_of(info, "index");
+    if (index < 0) return 1;
+    const layers::Texture& texture = read(index);
+    double sum = 0;
+    for (std::size_t i = static_cast<std::size_t>(channel); i < texture.rgba.size(); i += 4)
+      sum += texture.rgba[i];
+    return texture.rgba.empty() ? 1 : sum / 255 / (static_cast<double>(texture.rgba.size()) / 4);
+  }
+
+ private:
+  const layers::Texture& read(int index) {
+    const auto [entry, is_new] = read_.try_emplace(index);
+    if (is_new) entry->second = read_gltf_texture(import_, index);
+    return entry->second;
+  }
+  GltfImport& import_;
+  std::map<std::pair<int, bool>, int> found_;
+  std::map<int, layers::Texture> read_;
+};
+
+/// Roughness and metalness as the Blinn-Phong lobe of about the same width; see model_import.h.
+void set_gloss(double roughness, double metallic, const layers::vec3& dielectric, layers::Material& to) {
+  roughness = std::clamp(roughness, kLeastRoughness, 1.0);
+  metallic = std::clamp(metallic, 0.0, 1.0);
+  to.specular =
+      glm::mix(dielectric, to.base_color, static_cast<float>(metallic)) * static_cast<float>(1 - roughness);
+  to.shininess = static_cast<float>(std::min(kMaxShininess, 2 / std::pow(roughness, 4.0) - 2));
+  if (to.shininess < 1)
+    to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
+}
+
+/// Reflectance at normal incidence of what is no metal: KHR_materials_ior, KHR_materials_specular.
+layers::vec3 dielectric_of(const Json& material) {
+  double reflectance = 0.04;
+  if (const Json* ior = extension_of(material, "KHR_materials_ior")) {
+    const double n = number_of(*ior, "ior", 1.5);
+    if (n > 0) reflectance = std::pow((n - 1) / (n + 1), 2);
+  }
+  const Json* specular = extension_of(material, "KHR_materials_specular");
+  if (!specular) return layers::vec3(static_cast<float>(reflectance));
+  const double factor = reflectance * number_of(*specular, "specularFactor", 1);
+  const layers::vec3 color = color_of(numbers_of(*specular, "specularColorFactor", 3, {1, 1, 1}));
+  return glm::min(layers::vec3(1), static_cast<float>(factor) * color);
+}
+
+/// One material at a time.
+class Reading {
+ public:
+  Reading(GltfImport& import, Textures& textures, const Json& from, layers::Material& to, GltfMaterial& maps)
+      : import_(import), textures_(textures), from_(from), to_(to), maps_(maps) {}
+
+  void read() {
+    to_.two_sided = flag_of(from_, "doubleSided", false);
+    to_.unlit = extension_of(from_, "KHR_materials_unlit") != nullptr;
+    if (const Json* gloss = extension_of(from_, "KHR_materials_pbrSpecularGlossiness"))
+      read_gloss(*gloss);
+    else
+      read_metal(object_of(from_, "pbrMetallicRoughness"));
+    read_emission();
+    name_what_is_left_out();
+  }
+
+ private:
+  void read_base(const Json& pbr, const char* factor, const char* map) {
+    const auto base = numbers_of(pbr, factor, 4, {1, 1, 1, 1});
+    to_.base_color = color_of(base);
+    const Json& info = object_of(pbr, map);
+    const std::string mode = text_of(from_, "alphaMode", "OPAQUE");
+    to_.texture = textures_.of(info, mode == "OPAQUE");
+    maps_.base = coordinates_of(info);
+    maps_.has_base_map = to_.texture >= 0;
+    set_alpha(mode, std::clamp(base[3], 0.0, 1.0));
+  }
+
+  /// alpha = factor · texture · vertices; MASK compares it with the cutoff, so what is compared with is divided.
+  void set_alpha(const std::string& mode, double factor) {
+    to_.opacity = mode == "BLEND" ? static_cast<float>(factor) : 1;
+    if (mode != "MASK") return;
+    const double cutoff = number_of(from_, "alphaCutoff", 0.5);
+    if (cutoff <= 0) return;
+    if (factor < cutoff)
+      to_.opacity = 0;
+    else
+      to_.alpha_cutoff = static_cast<float>(cutoff / factor);
+  }
+
+  void read_metal(const Json& pbr) {
+    read_base(pbr, "baseColorFactor", "baseColorTexture");
+    const Json& map = object_of(pbr, "metallicRoughnessTexture");
+    if (!map.empty() && !to_.unlit)
+      import_.lacks("metallic-roughness maps are drawn as their mean", to_.name);
+    const double roughness = number_of(pbr, "roughnessFactor", 1) * textures_.mean_of(map, 1);
+    const double metallic = number_of(pbr, "metallicFactor", 1) * textures_.mean_of(map, 2);
+    set_gloss(roughness, metallic, dielectric_of(from_), to_);
+  }
+
+  void read_gloss(const Json& gloss) {
+    read_base(gloss, "diffuseFactor", "diffuseTexture");
+    const Json& map = object_of(gloss, "specularGlossinessTexture");
+    if (!map.empty()) import_.lacks("specular-glossiness maps are drawn as their mean", to_.name);
+    const double glossiness = number_of(gloss, "glossinessFactor", 1) * textures_.mean_of(map, 3);
+    set_gloss(1 - glossiness, 0, color_of(numbers_of(gloss, "specularFactor", 3, {1, 1, 1})), to_);
+  }
+
+  void read_emission() {
+    const Json* strength = extension_of(from_, "KHR_materials_emissive_strength");
+    const double factor = strength ? std::max(0.0, number_of(*strength, "emissiveStrength", 1)) : 1;
+    to_.emissive = static_cast<float>(factor) * color_of(numbers_of(from_, "emissiveFactor", 3, {0, 0, 0}));
+    const Json& info = object_of(from_, "emissiveTexture");
+    if (info.empty() || to_.emissive == layers::vec3(0)) return;
+    to_.emissive_texture = textures_.of(info, true);
+    maps_.emissive = coordinates_of(info);
+    maps_.has_emissive_map = to_.emissive_texture >= 0;
+    if (!maps_.has_emissive_map) to_.emissive = layers::vec3(0);  // the factor alone would glow all over
+  }
+
+  void name_what_is_left_out() {
+    if (to_.unlit) return;
+    if (from_.contains("normalTexture")) import_.lacks("normal maps are not drawn", to_.name);
+    if (from_.contains("occlusionTexture")) import_.lacks("occlusion maps are not drawn", to_.name);
+    if (const Json* specular = extension_of(from_, "KHR_materials_specular"))
+      if (specular->contains("specularTexture") || specular->contains("specularColorTexture"))
+        import_.lacks("specular maps are not drawn", to_.name);
+  }
+
+  GltfImport& import_;
+  Textures& textures_;
+  const Json& from_;
+  layers::Material& to_;
+  GltfMaterial& maps_;
+};
+
+}  // namespace
+
+void import_gltf_materials(GltfImport& import) {
+  Textures textures(import);
+  const std::size_t count = list_of(import.file.json, "materials").size();
+  for (std::size_t i = 0; i <= count; ++i) {
+    static const Json kDefault = Json::object();
+    const Json& from = i < count ? item_of(import.file, "materials", static_cast<int>(i)) : kDefault;
+    layers::Material to;
+    to.name = text_of(from, "name", i < count ? "material " + std::to_string(i) : "default");
+    GltfMaterial maps;
+    Reading(import, textures, from, to, maps).read();
+    import.model.scene.materials.push_back(to);
+    import.materials.push_back(maps);
+  }
+}
+
+}  // namespace talisman::sequences

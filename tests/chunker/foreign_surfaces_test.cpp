@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// What models of other programs ask for: textures that do not repeat, emission by a map, alpha that is cut or
+// lies in the vertices, lamps that fade, meshes that morph.
+#include <gtest/gtest.h>
+
+#include "chunker/texture.h"
+#include "tests/chunker/shade_support.h"
+
+namespace talisman::chunker::tests {
+namespace {
+
+using layers::Wrap;
+
+/// Two texels, black and white.
+MipLevel black_white(Wrap wrap) { return {2, 1, {splat(0), splat(1)}, wrap, Wrap::Repeat}; }
+
+TEST(WrappedTexture, ClampedShowsItsBorderBeyondIt) {
+  const MipLevel level = black_white(Wrap::Clamp);
+  for (const float u : {-5.0f, -0.1f, 0.0f, 0.1f, 0.25f}) EXPECT_EQ(bilinear(level, u, 0)[0], 0) << u;
+  for (const float u : {0.75f, 0.9f, 1.0f, 1.1f, 40.0f}) EXPECT_EQ(bilinear(level, u, 0)[0], 1) << u;
+  EXPECT_FLOAT_EQ(bilinear(level, 0.5f, 0)[0], 0.5f);
+}
+
+TEST(WrappedTexture, MirroredTurnsOverAtWholeNumbers) {
+  const MipLevel level = black_white(Wrap::Mirror);
+  for (const float u : {1.0f, 0.8f, 1.2f, -0.8f, -1.2f, 3.2f})
+    EXPECT_FLOAT_EQ(bilinear(level, u, 0)[0], 1) << u;
+  for (const float u : {0.0f, 0.2f, -0.2f, 1.8f, 2.2f, -2.0f})
+    EXPECT_FLOAT_EQ(bilinear(level, u, 0)[0], 0) << u;
+}
+
+/// The stage with one thing of foreign models, drawn in lanes and by the definition.
+void expect_like_the_definition(const Stage& stage) {
+  ASSERT_EQ(layers::first_defect(stage.scene), "");
+  for (const Shading shading : {Shading::Flat, Shading::Gouraud, Shading::Phong})
+    for (const bool mipmaps : {true, false}) {
+      RenderOptions options = exact_options();
+      options.shading = shading;
+      options.mipmaps = mipmaps;
+      expect_same(stage.render({}, options).sprite, stage.reference({}, options),
+                  std::to_string(static_cast<int>(shading)) + (mipmaps ? " with mipmaps" : ""));
+    }
+}
+
+TEST(ForeignSurface, WrappedTexturesAreDrawnAsDefined) {
+  for (const auto& [u, v] :
+       {std::pair{Wrap::Clamp, Wrap::Mirror}, {Wrap::Repeat, Wrap::Clamp}, {Wrap::Mirror, Wrap::Repeat}}) {
+    Stage stage;
+    stage.scene.textures[0].wrap_u = u;
+    stage.scene.textures[0].wrap_v = v;
+    expect_like_the_definition(stage);
+  }
+}
+
+TEST(ForeignSurface, NearestAndFinestTexturesAreDrawnAsDefined) {
+  Stage stage;
+  stage.scene.textures[0].nearest = true;
+  expect_like_the_definition(stage);
+  stage.scene.textures[0].finest = true;
+  expect_like_the_definition(stage);
+}
+
+TEST(ForeignSurface, EmissiveMapsAreDrawnAsDefined) {
+  Stage stage;
+  layers::Material& floor = stage.scene.materials[Stage::kFloor];
+  floor.emissive = {0.5f, 0.2f, 0};
+  floor.emissive_texture = 1;
+  expect_like_the_definition(stage);
+  layers::Mesh& mesh = stage.scene.meshes[Stage::kFloor];
+  mesh.emissive_uvs = mesh.uvs;
+  for (layers::vec2& uv : mesh.emissive_uvs) uv = 0.5f * uv + layers::vec2(0.1f, 0.2f);
+  expect_like_the_definition(stage);
+}
+
+TEST(ForeignSurface, LampsThatFadeAreDrawnAsDefined) {
+  Stage stage;
+  stage.scene.lights[Stage::kSpot].attenuation = {0.2, 0.1, 0.05};
+  stage.scene.lights[Stage::kSpot].range_m = 6;
+  expect_like_the_definition(stage);
+  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
+  expect_like_the_definition(stage);
+}
+
+TEST(ForeignSurface, AlphaOfVerticesIsDrawnAsDefined) {
+  Stage stage;
+  layers::Mesh& mesh = stage.scene.meshes[Stage::kFloor];
+  mesh.colors.assign(mesh.positions.size(), vec3(0.9f));
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.alphas.push_back(i % 3 == 0 ? 0.25f : 1.0f);
+  expect_like_the_definition(stage);
+  stage.scene.materials[Stage::kFloor].alpha_cutoff = 0.6f;
+  expect_like_the_definition(stage);
+}
+
+/// A square that fills the picture, and the colour of its middle in linear light.
+LinearColor middle_of(layers::Scene scene) {
+  scene.cameras.emplace_back();
+  scene.cameras[0].fov_y_rad = 1;
+  const PreparedScene prepared(scene);
+  const ivec2 size{8, 8};
+  const LinearImage image =
+      render_linear(prepared, scene.at(0), all_parts(scene), size, display_placement(size), {}, {});
+  return image.texels[4 * 8 + 4];
+}
+
+layers::Scene wall() {
+  layers::Scene scene;
+  scene.meshes = {talisman::tests::quad_mesh(8)};
+  scene.nodes.resize(1);
+  scene.nodes[0].local.translation = {0, 0, -2};
+  scene.materials.resize(1);
+  scene.materials[0].base_color = {1, 1, 1};
+  scene.parts = {{"wall", 0, 0, 0, -1}};
+  return scene;
+}
+
+TEST(ForeignSurface, LampFadesWithTheSquareOfItsDistance) {
+  layers::Scene scene = wall();
+  scene.lights.resize(1);
+  scene.lights[0].kind = layers::Light::Kind::Point;  // 2 m before the wall
+  scene.lights[0].attenuation = {0, 0, 1};
+  scene.lights[0].color = {2, 2, 2};
+  EXPECT_NEAR(middle_of(scene).r, 0.5, 0.01);  // 2 / 2²
+  scene.lights[0].range_m = 4;
+  EXPECT_NEAR(middle_of(scene).r, 0.5 * (1 - 1.0 / 16), 0.01);
+}
+
+TEST(ForeignSurface, AlphaBelowTheCutoffIsNotThere) {
+  layers::Scene scene = wall();
+  scene.materials[0].unlit = true;
+  scene.materials[0].base_color = {0.5f, 0, 0};
+  scene.materials[0].texture = 0;
+  scene.textures.resize(1);
+  scene.textures[0] = {"grey", 1, 1, {255, 255, 255, 128}, true};
+  scene.materials[0].alpha_cutoff = 0.5f;  // 128 / 255 is more
+  EXPECT_FLOAT_EQ(middle_of(scene).r, 0.5f);
+  EXPECT_FLOAT_EQ(middle_of(scene).a, 1);
+  scene.materials[0].alpha_cutoff = 0.6f;
+  EXPECT_EQ(middle_of(scene).a, 0);
+}
+
+TEST(ForeignSurface, MorphedMeshIsDrawnWhereItsWeightsPutIt) {
+  layers::Scene scene = wall();
+  scene.materials[0].unlit = true;
+  layers::MorphTarget away;
+  away.positions.assign(scene.meshes[0].positions.size(), vec3(20, 0, 0));
+  scene.meshes[0].morphs = {away};
+  scene.nodes[0].morph_weights = {0};
+  EXPECT_EQ(middle_of(scene).a, 1);
+  scene.nodes[0].morph_weights = {1};
+  EXPECT_EQ(middle_of(scene).a, 0);
+}
+
+}  // namespace
+}  // namespace talisman::chunker::tests
