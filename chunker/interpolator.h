@@ -8,7 +8,9 @@
 
 namespace talisman::chunker {
 
-inline constexpr int kMaxAttributes = 6;  ///< of a vertex, one Float4 each
+/// Of a vertex, one Float4 each: coordinates, colour, highlight and place, and the light of up to four maps
+/// (layers::kMaxShadowLights), diffuse and specular.
+inline constexpr int kMaxAttributes = 12;
 
 /// The gradient set-up of one triangle for interpolation in perspective, relative to its first corner:
 ///

@@ -129,27 +129,37 @@ AttributeLayout choose_layout(const Shader& shader, bool vertex_colors) {
   if (shader.per_pixel) layout.normal = next();
   if (shader.shadowed || (shader.per_pixel && (shader.has_specular || !shader.lights->local_empty())))
     layout.position = next();
-  if (shader.shadowed && !shader.per_pixel) layout.share = next();
-  if (shader.shadowed && !shader.per_pixel && shader.has_specular) layout.specular_share = next();
+  if (!shader.shadowed || shader.per_pixel) return layout;
+  const auto one_per_map = [&layout, count = shader.lights->shadows] {
+    const int first = layout.count;
+    layout.count += count;
+    return first;
+  };
+  if (shader.shadow_term)
+    layout.share = next();
+  else
+    layout.mapped = one_per_map();
+  if (shader.has_specular) layout.mapped_specular = one_per_map();
   return layout;
 }
 
-/// One light's share: `to_light` of unit length.
-void add_light(const Shader& shader, Float4 normal, Float4 to_eye, Float4 to_light, Float4 color, int shadow,
-               Lighting& sum, Shadowing& shadowing) {
+/// What one light gives; `to_light` of unit length.
+struct OneLight {
+  Float4 diffuse, specular;
+  int map = -1;
+};
+
+template <class Add>
+void add_light(const Shader& shader, Float4 normal, Float4 to_eye, Float4 to_light, Float4 color, int map,
+               const Add& add) {
   const float facing = dot3(normal, to_light);
   if (!(facing > 0)) return;
-  const Float4 diffuse = color * splat(facing);
-  sum.diffuse += diffuse;
-  if (shadow >= 0) shadowing.diffuse[shadow] = luminance(diffuse);
-  if (!shader.has_specular) return;
-  const float lobe = dot3(normal, normalized3(to_light + to_eye));
-  Float4 specular = color * shader.specular * splat(layers::power_of_unit(lobe, shader.shininess));
-  if (shadow >= 0) {
-    shadowing.specular[shadow] = luminance(specular);
-    specular *= splat(shadowing.visibility[shadow]);
+  OneLight light{color * splat(facing), splat(0), map};
+  if (shader.has_specular) {
+    const float lobe = dot3(normal, normalized3(to_light + to_eye));
+    light.specular = color * shader.specular * splat(layers::power_of_unit(lobe, shader.shininess));
   }
-  sum.specular += specular;
+  add(light);
 }
 
 float fading_at(const LightSet::Fading& fading, Float4 source, Float4 position) {
@@ -157,24 +167,29 @@ float fading_at(const LightSet::Fading& fading, Float4 source, Float4 position) 
   return faded(fading, dot3(apart, apart));
 }
 
-void add_point(const Shader& shader, Float4 normal, Float4 to_eye, Float4 position,
-               const LightSet::Point& source, Lighting& sum, Shadowing& shadowing) {
-  Float4 color = source.color;
-  if (layers::is_built(layers::Effect::LightFalloff) && source.fading.any)
-    color *= splat(fading_at(source.fading, source.position, position));
-  add_light(shader, normal, to_eye, normalized3(source.position - position), color, source.shadow, sum,
-            shadowing);
+/// The colour of a lamp at `position` from which it lies away.
+template <class Source>
+Float4 faded_color(const Source& source, Float4 position, Float4 color) {
+  if (!layers::is_built(layers::Effect::LightFalloff) || !source.fading.any) return color;
+  return color * splat(fading_at(source.fading, source.position, position));
 }
 
-void add_spot(const Shader& shader, Float4 normal, Float4 to_eye, Float4 position,
-              const LightSet::Spot& source, Lighting& sum, Shadowing& shadowing) {
-  const Float4 to_light = normalized3(source.position - position);
-  const float t = clamp_unit((-dot3(source.axis, to_light) - source.cos_outer) * source.inverse_width);
-  const float falloff = (t * t) * (3 - 2 * t);
-  Float4 color = source.color * splat(falloff);
-  if (layers::is_built(layers::Effect::LightFalloff) && source.fading.any)
-    color *= splat(fading_at(source.fading, source.position, position));
-  add_light(shader, normal, to_eye, to_light, color, source.shadow, sum, shadowing);
+/// Calls `add` for every light that shines on the point, in the order of the set.
+template <class Add>
+void for_each_light(const Shader& shader, Float4 normal, Float4 position, const Add& add) {
+  const Float4 to_eye = shader.has_specular ? normalized3(-position) : splat(0);
+  for (const auto& source : shader.lights->directional)
+    add_light(shader, normal, to_eye, source.to_light, source.color, source.shadow, add);
+  for (const auto& source : shader.lights->point)
+    add_light(shader, normal, to_eye, normalized3(source.position - position),
+              faded_color(source, position, source.color), source.shadow, add);
+  for (const auto& source : shader.lights->spot) {
+    const Float4 to_light = normalized3(source.position - position);
+    const float t = clamp_unit((-dot3(source.axis, to_light) - source.cos_outer) * source.inverse_width);
+    const float falloff = (t * t) * (3 - 2 * t);
+    add_light(shader, normal, to_eye, to_light, faded_color(source, position, source.color * splat(falloff)),
+              source.shadow, add);
+  }
 }
 
 /// `lane`: of the first of the two coordinates in their attribute.
@@ -197,9 +212,6 @@ Float4 look_up(const Shader& shader, const Pyramid& pyramid, const Interpolator&
                                                                     : bilinear(finest, u, v);
 }
 
-/// Shares of each map's light in `whole`.
-Float4 shares(Float4 parts, float whole) { return whole > 0 ? parts * splat(1 / whole) : splat(0); }
-
 Lighting interpolated_lighting(const Shader& shader, const Interpolator& t, const Lambda& at,
                                Float4 visibility) {
   if (shader.shadowed)
@@ -216,12 +228,36 @@ Lighting lighting_at(const Shader& shader, const Interpolator& t, const Lambda& 
   const Float4 color = layout.color >= 0 ? attribute(t, at, layout.color) : shader.base;
   const Float4 normal = normalized3(attribute(t, at, layout.normal));
   const Float4 position = layout.position >= 0 ? attribute(t, at, layout.position) : splat(0);
-  Shadowing shadowing{visibility};
-  Lighting lighting = light(shader, normal, position, shadowing);
-  if (shader.shadowed)
-    lighting.shadow = shadow_product(shares(shadowing.diffuse, luminance(lighting.diffuse)), visibility,
-                                     shader.lights->shadows);
+  const Lighting lighting = light(shader, normal, position, visibility);
   return {color * lighting.diffuse, lighting.specular, lighting.shadow};
+}
+
+/// Flat, Gouraud: the light of the vertex, in parts where shadows are looked up.
+void write_lighting(const Shader& shader, const ShadePoint& point, Float4& color, Float4* attributes) {
+  const AttributeLayout& layout = shader.layout;
+  if (!shader.shadowed) {
+    const Lighting lighting = light(shader, point.normal, point.lit_at, splat(1));
+    color *= lighting.diffuse;
+    if (layout.specular >= 0) attributes[layout.specular] = lighting.specular;
+    return;
+  }
+  const LightParts parts = light_parts(shader, point.normal, point.lit_at);
+  const int count = shader.lights->shadows;
+  if (layout.share >= 0) {
+    Float4 mapped = splat(0);
+    float whole = luminance(parts.diffuse);
+    for (int k = 0; k < count; ++k) {
+      mapped[k] = luminance(parts.mapped_diffuse[k]);
+      whole += mapped[k];
+    }
+    attributes[layout.share] = whole > 0 ? mapped * splat(1 / whole) : splat(0);
+  }
+  if (layout.mapped >= 0)
+    for (int k = 0; k < count; ++k) attributes[layout.mapped + k] = color * parts.mapped_diffuse[k];
+  if (layout.specular >= 0) attributes[layout.specular] = parts.specular;
+  if (layout.mapped_specular >= 0)
+    for (int k = 0; k < count; ++k) attributes[layout.mapped_specular + k] = parts.mapped_specular[k];
+  color *= parts.diffuse;
 }
 
 /// Linear 0 … 1; clear outside.
@@ -264,36 +300,34 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
   return shader;
 }
 
-Lighting light(const Shader& shader, Float4 normal, Float4 position) {
-  Shadowing shadowing;
-  return light(shader, normal, position, shadowing);
+Lighting light(const Shader& shader, Float4 normal, Float4 position, Float4 visibility) {
+  Lighting sum{shader.lights->ambient, splat(0)};
+  Float4 whole = shader.lights->ambient;
+  for_each_light(shader, normal, position, [&](const OneLight& one) {
+    const Float4 seen = splat(one.map >= 0 ? visibility[one.map] : 1.0f);
+    if (shader.shadowed) whole += one.diffuse;
+    sum.diffuse += one.diffuse * seen;
+    sum.specular += one.specular * seen;
+  });
+  if (shader.shadowed) sum.shadow = share_left(luminance(sum.diffuse), luminance(whole));
+  return sum;
 }
 
-Lighting light(const Shader& shader, Float4 normal, Float4 position, Shadowing& shadowing) {
-  Lighting sum{shader.lights->ambient, splat(0)};
-  const Float4 to_eye = shader.has_specular ? normalized3(-position) : splat(0);
-  for (const auto& source : shader.lights->directional)
-    add_light(shader, normal, to_eye, source.to_light, source.color, source.shadow, sum, shadowing);
-  for (const auto& source : shader.lights->point)
-    add_point(shader, normal, to_eye, position, source, sum, shadowing);
-  for (const auto& source : shader.lights->spot)
-    add_spot(shader, normal, to_eye, position, source, sum, shadowing);
-  return sum;
+LightParts light_parts(const Shader& shader, Float4 normal, Float4 position) {
+  LightParts parts;
+  parts.diffuse = shader.lights->ambient;
+  for_each_light(shader, normal, position, [&](const OneLight& one) {
+    (one.map >= 0 ? parts.mapped_diffuse[one.map] : parts.diffuse) += one.diffuse;
+    (one.map >= 0 ? parts.mapped_specular[one.map] : parts.specular) += one.specular;
+  });
+  return parts;
 }
 
 void write_attributes(const Shader& shader, const ShadePoint& point, Float4* attributes) {
   const AttributeLayout& layout = shader.layout;
   if (layout.uv >= 0) attributes[layout.uv] = point.uv;
   Float4 color = shader.base * point.vertex_color;
-  if (shader.lit && !shader.per_pixel) {
-    Shadowing shadowing;
-    const Lighting lighting = light(shader, point.normal, point.lit_at, shadowing);
-    color *= lighting.diffuse;
-    if (layout.specular >= 0) attributes[layout.specular] = lighting.specular;
-    if (layout.share >= 0) attributes[layout.share] = shares(shadowing.diffuse, luminance(lighting.diffuse));
-    if (layout.specular_share >= 0)
-      attributes[layout.specular_share] = shares(shadowing.specular, luminance(lighting.specular));
-  }
+  if (shader.lit && !shader.per_pixel) write_lighting(shader, point, color, attributes);
   color[3] = point.vertex_color[3];
   if (layout.color >= 0) attributes[layout.color] = color;
   if (layout.normal >= 0) attributes[layout.normal] = point.normal;

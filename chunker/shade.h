@@ -16,21 +16,24 @@
 ///
 /// With a second texture the texel is k₁ T₁ + k₂ α₁ T₂ (alpha that of T₁) [LS97 2.3].
 ///
-/// Shadows and reflections, where they are called for:
+/// Shadows and reflections, where they are called for, per channel:
 ///
-///   s_l   = 1 - share_l · (1 - v_l),   share_l = Y(diffuse of light l) / Y(all diffuse, ambient included)
-///   B     = base · vertex colour · diffuse · texel + α_texel · emissive
-///   Full  = α · (B · Π s_l + α_texel · (Σ specular_l · v_l + reflectivity · reflection))
+///   diffuse_v = ambient + Σ v_l D_l,   D_l = colour_l · max(0, N·L)           every light by its own visibility
+///   Full      = α · (base · vertex colour · diffuse_v · texel
+///                    + α_texel · (emissive + Σ v_l S_l + reflectivity · reflection))
+///   s         = Y(diffuse_v) / Y(diffuse)                       what the shadow term of one light leaves, 0 … 1
 ///
-/// v: visibility of the light from the point (chunker/shadow_map.h), Y: luminance. s is the share of light
-/// that is left when light l is blocked, so ambient light stays in the shadow, and where a light does not
-/// shine anyway (N·L ≤ 0, outside a cone) its share is 0 and nothing is darkened twice. It is one number for
-/// three channels, as a black sprite with alpha demands: exact for lights of one hue; and emission darkens
-/// with the rest of B. Flat and Gouraud shading interpolate the shares, and attenuate the highlights of all
-/// lights together by their shares of luminance.
+/// v: visibility of the light from the point (chunker/shadow_map.h; 1 where it has no map), Y: luminance. A
+/// surface from which every light is hidden shows its ambient light and its emission, of whatever hue the
+/// lights are. The shadow *term* is black with alpha (1 - s)β and multiplies all of the base by one number
+/// for three channels: exact for lights of one hue without emission; what it loses otherwise is measured by
+/// `accuracy --factoring`. Where a light does not shine anyway (N·L ≤ 0, outside a cone) nothing is darkened.
+///
+/// Flat and Gouraud shading interpolate the light of every map by itself (an attribute each, only where a
+/// shadow is looked up), so that their sum is as right as that of the light without shadows.
 ///
 /// While a term is drawn that is not a colour over coverage, a fragment's alpha still is the surface's own
-/// alpha, so that visibility is the same in every term; the shadow's (1 - Π s) α stands in red, and only the
+/// alpha, so that visibility is the same in every term; the shadow's (1 - s) α stands in red, and only the
 /// resolved texel is turned into what the sprite holds.
 ///
 /// A `Shader` is one part's material and lights, reduced to what this part needs: it says which attributes
@@ -101,11 +104,12 @@ struct AttributeLayout {
   int uv = -1;  ///< and in the last two lanes the coordinates of the emissive texture
   int color =
       -1;  ///< vertex alpha in the last lane, base · vertex colour (Phong), or base · vertex colour · diffuse (Flat, Gouraud)
-  int specular = -1;        ///< Flat, Gouraud
-  int normal = -1;          ///< Phong
-  int position = -1;        ///< Phong, relative to the eye; all shadings where shadows are looked up
-  int share = -1;           ///< Flat, Gouraud with shadows: shares of diffuse light, one channel per map
-  int specular_share = -1;  ///< the same of the highlights
+  int specular = -1;  ///< Flat, Gouraud
+  int normal = -1;    ///< Phong
+  int position = -1;  ///< Phong, relative to the eye; all shadings where shadows are looked up
+  int share = -1;     ///< Flat, Gouraud, shadow term: each map's share in the luminance of diffuse light
+  int mapped = -1;    ///< Flat, Gouraud with shadows: base · vertex colour · D_l, one attribute per map
+  int mapped_specular = -1;  ///< the same of the highlights: S_l
   int count = 0;
 };
 
@@ -138,7 +142,7 @@ struct Shader {
   Of<SpecularHighlight, bool> has_specular;
   Of<Translucency, bool, true> opaque;  ///< alpha is exactly 1 at every pixel
   Of<ShadowMap, bool> shadowed;         ///< shadow maps are looked up
-  Of<ShadowLayer, bool> shadow_term;    ///< the colour is (1 - Π s) α in red
+  Of<ShadowLayer, bool> shadow_term;    ///< the colour is (1 - s) α in red
   Of<Texture, bool> two_textures;
   TextureFilter filter = TextureFilter::Trilinear;
   int max_anisotropy = 1;
@@ -169,16 +173,15 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
                    const RenderOptions& options, const ShadeInputs& inputs = {}, const PartInputs& own = {});
 
 struct Lighting {
-  Float4 diffuse;
-  Float4 specular;
-  float shadow = 1;  ///< Π s
+  Float4 diffuse;    ///< every light times its visibility
+  Float4 specular;   ///< likewise
+  float shadow = 1;  ///< s
 };
 
-/// What shadow maps say, one channel per map, and how much light they can take away.
-struct Shadowing {
-  Float4 visibility{1, 1, 1, 1};
-  Float4 diffuse{0, 0, 0, 0};   ///< luminance of the diffuse light of each map's light
-  Float4 specular{0, 0, 0, 0};  ///< and of its highlight
+/// The light of one point in parts: what has no shadow map, and what each map's light gives when it is seen.
+struct LightParts {
+  Float4 diffuse{0, 0, 0, 0}, specular{0, 0, 0, 0};
+  std::array<Float4, layers::kMaxShadowLights> mapped_diffuse{}, mapped_specular{};
 };
 
 inline constexpr float kLuminance[3] = {0.2126f, 0.7152f, 0.0722f};
@@ -186,17 +189,16 @@ inline float luminance(Float4 c) {
   return (c[0] * kLuminance[0] + c[1] * kLuminance[1]) + c[2] * kLuminance[2];
 }
 
-/// Π s over `count` maps.
-inline float shadow_product(Float4 share, Float4 visibility, int count) {
-  float product = 1;
-  for (int k = 0; k < count; ++k) product = product * (1 - share[k] * (1 - visibility[k]));
-  return product;
-}
+/// s of the luminance with and without shadows; where there is no light nothing is darkened.
+inline float share_left(float shadowed, float whole) { return whole > 0 ? shadowed / whole : 1.0f; }
 
-/// `normal` of unit length (or zero: ambient light only), `position` relative to the eye.
-Lighting light(const Shader& shader, Float4 normal, Float4 position);
-/// The same with shadows: highlights are attenuated by `shadowing.visibility`, and the luminances filled in.
-Lighting light(const Shader& shader, Float4 normal, Float4 position, Shadowing& shadowing);
+/// `normal` of unit length (or zero: ambient light only), `position` relative to the eye, `visibility` of the
+/// lights with maps.
+Lighting light(const Shader& shader, Float4 normal, Float4 position, Float4 visibility);
+inline Lighting light(const Shader& shader, Float4 normal, Float4 position) {
+  return light(shader, normal, position, splat(1));
+}
+LightParts light_parts(const Shader& shader, Float4 normal, Float4 position);
 
 /// What is known of one vertex (or, flat, of one triangle's corner) before its attributes are written.
 struct ShadePoint {
@@ -228,7 +230,6 @@ inline Float4 combined(const Shader& shader, Float4 texel, const Lighting& light
     color += (kTerms.specular ? lighting.specular + emissive : emissive) * alpha;
   } else {
     color += emissive * alpha;
-    if constexpr (kTerms.shadowed) color *= splat(lighting.shadow);
     Float4 added = lighting.specular;
     if constexpr (kTerms.reflecting) added += reflection * splat(shader.reflectivity);
     if constexpr (kTerms.reflecting || kTerms.specular) color += added * alpha;
@@ -264,13 +265,19 @@ inline Lighting interpolated_lighting(const Shader& shader, const Interpolator& 
   const AttributeLayout& layout = shader.layout;
   Lighting lighting{layout.color >= 0 ? attribute(t, at, layout.color) : shader.base, splat(0)};
   if constexpr (kSpecular) lighting.specular = attribute(t, at, layout.specular);
-  if constexpr (kShadowed)
-    lighting.shadow = shadow_product(attribute(t, at, layout.share), visibility, shader.lights->shadows);
-  if constexpr (kSpecular && kShadowed) {
-    const Float4 taken = attribute(t, at, layout.specular_share) * (splat(1) - visibility);
-    float left = 1;
-    for (int k = 0; k < shader.lights->shadows; ++k) left -= taken[k];
-    lighting.specular *= splat(clamp_unit(left));
+  if constexpr (kShadowed) {
+    const int count = shader.lights->shadows;
+    if (layout.share >= 0) {
+      const Float4 hidden = attribute(t, at, layout.share) * (splat(1) - visibility);
+      for (int k = 0; k < count; ++k) lighting.shadow -= hidden[k];
+      lighting.shadow = clamp_unit(lighting.shadow);
+    } else {
+      for (int k = 0; k < count; ++k)
+        lighting.diffuse += attribute(t, at, layout.mapped + k) * splat(visibility[k]);
+    }
+    if constexpr (kSpecular)
+      for (int k = 0; k < count; ++k)
+        lighting.specular += attribute(t, at, layout.mapped_specular + k) * splat(visibility[k]);
   }
   return lighting;
 }

@@ -33,7 +33,7 @@ struct ShadeBlock {
   alignas(64) BlockRow level_share;  ///< of the coarser one; 0: it is not needed
   BlockTaps fine, coarse;
   alignas(64) std::array<BlockRow, 3> diffuse, specular;  ///< Phong only
-  /// Where shadows are looked up: what the maps say, and Π s.
+  /// Where shadows are looked up: what the maps say, and s (share_left).
   alignas(64) std::array<BlockRow, layers::kMaxShadowLights> visibility;
   alignas(64) BlockRow shadow;
 };

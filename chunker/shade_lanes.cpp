@@ -246,6 +246,7 @@ HWY_INLINE Vec lobes(Vec cosine, float shininess) {
 
 struct Lit {
   Vec3 diffuse, specular;
+  Vec3 whole;  ///< diffuse, as it is without shadows; kShadowed alone
 };
 
 HWY_INLINE Vec luminance_of(const Vec3& c) {
@@ -253,38 +254,36 @@ HWY_INLINE Vec luminance_of(const Vec3& c) {
                  hn::Mul(c.z, set(kLuminance[2])));
 }
 
-/// The rows of one group of lanes in which add_light<true> finds visibilities and leaves luminances.
-struct ShadowRows {
-  const ShadeBlock* block = nullptr;
-  int first = 0;                                            ///< point of the first lane
-  alignas(64) float diffuse[layers::kMaxShadowLights][16];  ///< luminance of each map's light
-};
+/// `more` is added where the light shines.
+template <class Mask>
+HWY_INLINE void add_where(Mask shines, const Vec3& more, Vec3& to) {
+  const Vec3 added = sum(to, more);
+  to = {hn::IfThenElse(shines, added.x, to.x), hn::IfThenElse(shines, added.y, to.y),
+        hn::IfThenElse(shines, added.z, to.z)};
+}
 
+/// `visibility`: of the lights with maps, at the first lane's point; kShadowed alone.
 template <bool kShadowed, bool kSpecular>
 HWY_INLINE void add_light(const Shader& shader, const Vec3& normal, const Vec3& to_eye, const Vec3& to_light,
-                          const Vec3& color, [[maybe_unused]] int shadow, Lit& lit,
-                          [[maybe_unused]] ShadowRows& rows) {
+                          const Vec3& color, [[maybe_unused]] int map,
+                          [[maybe_unused]] const ShadeBlock& block, [[maybe_unused]] int first, Lit& lit) {
   const Vec facing = dot(normal, to_light);
-  const auto lit_side = hn::Gt(facing, set(0));
-  if (hn::AllFalse(Floats(), lit_side)) return;
+  const auto shines = hn::Gt(facing, set(0));
+  if (hn::AllFalse(Floats(), shines)) return;
   const Vec3 own = scaled(color, facing);
-  const Vec3 diffuse = sum(lit.diffuse, own);
-  if constexpr (kShadowed)
-    if (shadow >= 0)
-      hn::Store(hn::IfThenElseZero(lit_side, luminance_of(own)), Floats(), rows.diffuse[shadow]);
-  lit.diffuse = {hn::IfThenElse(lit_side, diffuse.x, lit.diffuse.x),
-                 hn::IfThenElse(lit_side, diffuse.y, lit.diffuse.y),
-                 hn::IfThenElse(lit_side, diffuse.z, lit.diffuse.z)};
+  [[maybe_unused]] Vec seen = set(1);
+  if constexpr (kShadowed) {
+    if (map >= 0) seen = hn::Load(Floats(), &block.visibility[map][first]);
+    add_where(shines, own, lit.whole);
+    add_where(shines, scaled(own, seen), lit.diffuse);
+  } else {
+    add_where(shines, own, lit.diffuse);
+  }
   if constexpr (!kSpecular) return;
   const Vec lobe = lobes(dot(normal, unit(sum(to_light, to_eye))), shader.shininess);
   Vec3 highlight = scaled(product(color, set3(shader.specular)), lobe);
-  if constexpr (kShadowed)
-    if (shadow >= 0)
-      highlight = scaled(highlight, hn::Load(Floats(), &rows.block->visibility[shadow][rows.first]));
-  const Vec3 specular = sum(lit.specular, highlight);
-  lit.specular = {hn::IfThenElse(lit_side, specular.x, lit.specular.x),
-                  hn::IfThenElse(lit_side, specular.y, lit.specular.y),
-                  hn::IfThenElse(lit_side, specular.z, lit.specular.z)};
+  if constexpr (kShadowed) highlight = scaled(highlight, seen);
+  add_where(shines, highlight, lit.specular);
 }
 
 HWY_INLINE void store3(const Vec3& v, std::array<BlockRow, 3>& rows, int i) {
@@ -314,28 +313,18 @@ HWY_INLINE Vec3 faded_color(const LightSet::Fading& fading, const Vec3& apart, c
   return scaled(color, factor);
 }
 
-/// shadow_product() of the lights' shares.
-HWY_INLINE void store_shadow(const LightSet& lights, const Lit& lit, const ShadowRows& rows,
-                             ShadeBlock& block) {
+/// share_left() of the luminances.
+HWY_INLINE void store_shadow(const Lit& lit, int first, ShadeBlock& block) {
   const Floats d;
-  const Vec whole = luminance_of(lit.diffuse);
+  const Vec whole = luminance_of(lit.whole);
   const auto some = hn::Gt(whole, set(0));
-  const Vec r = hn::Div(set(1), whole);
-  Vec left = set(1);
-  for (int k = 0; k < lights.shadows; ++k) {
-    const Vec share = hn::IfThenElseZero(some, hn::Mul(hn::Load(d, rows.diffuse[k]), r));
-    const Vec blocked = hn::Sub(set(1), hn::Load(d, &block.visibility[k][rows.first]));
-    left = hn::Mul(left, hn::Sub(set(1), hn::Mul(share, blocked)));
-  }
-  hn::Store(left, d, &block.shadow[rows.first]);
+  hn::Store(hn::IfThenElse(some, hn::Div(luminance_of(lit.diffuse), whole), set(1)), d, &block.shadow[first]);
 }
 
 /// light() at every point.
 template <bool kShadowed, bool kSpecular>
 HWY_INLINE void light_points(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   const Floats d;
-  ShadowRows rows;
-  rows.block = &block;
   for (int i = 0; i < block.count; i += static_cast<int>(hn::Lanes(d))) {
     const Vec one = hn::Load(d, &block.one[i]), two = hn::Load(d, &block.two[i]);
     const Vec3 normal = unit(attribute3(t, shader.layout.normal, one, two));
@@ -344,29 +333,26 @@ HWY_INLINE void light_points(const Shader& shader, const Interpolator& t, ShadeB
         shader.layout.position >= 0 ? attribute3(t, shader.layout.position, one, two) : nowhere;
     const Vec3 to_eye =
         kSpecular ? unit(Vec3{hn::Neg(position.x), hn::Neg(position.y), hn::Neg(position.z)}) : nowhere;
-    if constexpr (kShadowed) {
-      rows.first = i;
-      for (auto& row : rows.diffuse) hn::Store(set(0), d, row);
-    }
-    Lit lit{set3(shader.lights->ambient), nowhere};
+    const Vec3 ambient = set3(shader.lights->ambient);
+    Lit lit{ambient, nowhere, ambient};
     for (const auto& source : shader.lights->directional)
       add_light<kShadowed, kSpecular>(shader, normal, to_eye, set3(source.to_light), set3(source.color),
-                                      source.shadow, lit, rows);
+                                      source.shadow, block, i, lit);
     for (const auto& source : shader.lights->point) {
       const Vec3 apart = minus(set3(source.position), position);
       add_light<kShadowed, kSpecular>(shader, normal, to_eye, unit(apart),
                                       faded_color(source.fading, apart, set3(source.color)), source.shadow,
-                                      lit, rows);
+                                      block, i, lit);
     }
     for (const auto& source : shader.lights->spot) {
       const Vec3 apart = minus(set3(source.position), position), to_light = unit(apart);
       add_light<kShadowed, kSpecular>(shader, normal, to_eye, to_light,
                                       faded_color(source.fading, apart, spot_color(source, to_light)),
-                                      source.shadow, lit, rows);
+                                      source.shadow, block, i, lit);
     }
     store3(lit.diffuse, block.diffuse, i);
     if constexpr (kSpecular) store3(lit.specular, block.specular, i);
-    if constexpr (kShadowed) store_shadow(*shader.lights, lit, rows, block);
+    if constexpr (kShadowed) store_shadow(lit, i, block);
   }
 }
 

@@ -63,13 +63,12 @@ TEST(HardShadow, LightInsideAnObjectLightsNothingOutside) {
   Floor floor;
   layers::Light& lamp = floor.shaded.scene.lights[1];
   lamp.kind = layers::Light::Kind::Point;
-  lamp.color = vec3(0.4f);  // of one hue with the ambient light: a shadow is one number for three channels
+  lamp.color = {0.5f, 0.3f, 0.1f};     // of another hue than the ambient light: nothing of it may be left
   lamp.position = {-0.35, 0.8, 0.02};  // the cube spans (-0.9, 0.4, -0.5) to (0.1, 1.4, 0.5)
   Floor dark = floor;
   dark.shaded.scene.lights.resize(1);
   const LinearImage expected = dark.draw(ShadeTerm::Full, {}), without = floor.draw(ShadeTerm::Full, {});
-  // Gouraud interpolates light and shares of light apart from each other: only near.
-  for (const Shading shading : {Shading::Flat, Shading::Phong}) {
+  for (const Shading shading : kShadings) {
     RenderOptions options = exact_options();
     options.shading = shading;
     const LinearImage image = floor.draw_with(ShadeTerm::Full, kCube, 256, options);

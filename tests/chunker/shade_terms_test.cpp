@@ -117,10 +117,12 @@ TEST(ShadeTerm, HiddenSurfacesStayHidden) {
   EXPECT_GT(would_show, 0.001f);  // or the test could not fail
 }
 
-// Inside one triangle no texel mixes surfaces: the formula of the header must hold in every one.
+// Inside one triangle no texel mixes surfaces: one shadow of the hue of the ambient light, which is what black
+// with alpha can show, must be that of one pass in every one.
 TEST(ShadeTerm, AddUpToFullInsideASurface) {
   for (const Shading shading : {Shading::Flat, Shading::Gouraud, Shading::Phong}) {
     ShadeScene shaded;
+    shaded.scene.lights.resize(2);
     shaded.inputs();
     shaded.scene.parts.resize(1);
     shaded.scene.meshes[ShadeScene::kFloor] = talisman::tests::quad_mesh(6, 1, 3);
@@ -137,6 +139,67 @@ TEST(ShadeTerm, AddUpToFullInsideASurface) {
       EXPECT_NEAR(full.texels[i].b, unfactored.texels[i].b, 2e-6f) << i;
     }
     EXPECT_GT(whole, 200);
+  }
+}
+
+/// The stage under its ambient light and those of `lights`, each with its own shadow map.
+LinearImage under(std::initializer_list<int> lights, const RenderOptions& options) {
+  ShadeScene shaded;
+  for (const int light : {ShadeScene::kSpot, ShadeScene::kSun})
+    if (std::find(lights.begin(), lights.end(), light) == lights.end())
+      shaded.scene.lights[light].color = vec3(0);
+  return shaded.linear(shaded.inputs(), options);
+}
+
+// Light adds up [LS97 2.3]: a picture under two lamps is the sum of the pictures under one, each with its own
+// shadows and highlights, whatever their hues, on every texel. What is there without them counts once.
+TEST(ShadeTerm, FullIsTheSumOverTheLights) {
+  for (const Shading shading : {Shading::Flat, Shading::Gouraud, Shading::Phong}) {
+    RenderOptions options = exact_options();
+    options.shading = shading;
+    const LinearImage both = under({ShadeScene::kSpot, ShadeScene::kSun}, options),
+                      spot = under({ShadeScene::kSpot}, options), sun = under({ShadeScene::kSun}, options),
+                      neither = under({}, options);
+    for (std::size_t i = 0; i < both.texels.size(); ++i) {
+      const LinearColor &a = spot.texels[i], &b = sun.texels[i], &none = neither.texels[i];
+      ASSERT_NEAR(both.texels[i].r, a.r + b.r - none.r, 2e-6f) << i;
+      ASSERT_NEAR(both.texels[i].g, a.g + b.g - none.g, 2e-6f) << i;
+      ASSERT_NEAR(both.texels[i].b, a.b + b.b - none.b, 2e-6f) << i;
+    }
+  }
+}
+
+// Two equal lamps and nothing else: hidden from both there is no light at all, hidden from one half of it. A
+// product of what each leaves would be a quarter.
+TEST(ShadeTerm, WhereBothLampsAreHiddenIsNoLight) {
+  for (const Shading shading : {Shading::Flat, Shading::Gouraud, Shading::Phong}) {
+    ShadeScene shaded;
+    shaded.scene.lights[0].color = vec3(0);
+    for (const int light : {ShadeScene::kSpot, ShadeScene::kSun}) {
+      shaded.scene.lights[light] = {};
+      shaded.scene.lights[light].direction = {light == ShadeScene::kSpot ? 0.3 : -0.3, -1, 0};
+      shaded.scene.lights[light].color = vec3(0.4f);
+      shaded.scene.lights[light].casts_shadow = true;
+    }
+    for (layers::Material& material : shaded.scene.materials) material.specular = material.emissive = vec3(0);
+    shaded.scene.materials[ShadeScene::kFloor].texture = -1;
+    shaded.scene.materials[ShadeScene::kFloor].reflectivity = 0;
+    ShadeInputs inputs = shaded.inputs();
+    inputs.reflections = {};
+    RenderOptions options = exact_options();
+    options.shading = shading;
+    const LinearImage image = shaded.linear(inputs, options);
+    const float lit = shaded.scene.materials[ShadeScene::kFloor].base_color.x * 0.8f * (1 / std::sqrt(1.09f));
+    int dark = 0, half = 0, full = 0;
+    for (const LinearColor& c : image.texels) {
+      if (c.a < 1) continue;
+      dark += c.r == 0;
+      half += std::abs(c.r - lit / 2) < 1e-5f;
+      full += std::abs(c.r - lit) < 1e-5f;
+    }
+    EXPECT_GT(dark, 20) << static_cast<int>(shading);
+    EXPECT_GT(half, 20) << static_cast<int>(shading);
+    EXPECT_GT(full, 100) << static_cast<int>(shading);
   }
 }
 
