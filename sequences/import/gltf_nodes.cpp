@@ -39,6 +39,7 @@ void split(const dmat4& matrix, layers::Transform& outer, layers::Transform& inn
   Eigen::Matrix3d m;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) m(r, c) = matrix[c][r];
+  if (!m.allFinite()) throw InputError("a matrix is not finite");  // Eigen leaves the result unset
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();
   Eigen::Vector3d s = svd.singularValues();

@@ -3,13 +3,13 @@
 
 /// What is this run? run.json (talisman.run/2) says it in full, for people and for --resume:
 ///
-///   identity   SHA-1 of the version, the sequence's name, all settings and the content: two runs with the same
+///   identity   hash (XXH3-128) of the version, the sequence's name, all settings and the content: two runs with the same
 ///              identity make the same decisions and the same pictures, frame by frame
 ///   version    of talisman
 ///   kind       "render" or "plan"
 ///   frames, format, overlay, separate, quality    which of it is written: not part of the identity
 ///   settings   every field of Settings (settings_json.h)
-///   content    SHA-1 of every file that the sequence was read from, by name: its YAML files, models and what
+///   content    hash (XXH3-128) of every file that the sequence was read from, by name: its YAML files, models and what
 ///              they refer to, textures, terrain and lists. Names do not depend on the machine: that in the
 ///              Debian package, or the path from the sequence file.
 

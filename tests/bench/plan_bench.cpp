@@ -13,6 +13,7 @@
 #include <benchmark/benchmark.h>
 
 #include "layers/layer.h"
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/step.h"
 #include "tests/support/fleet.h"

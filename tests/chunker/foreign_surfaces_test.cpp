@@ -29,15 +29,15 @@ TEST(WrappedTexture, MirroredTurnsOverAtWholeNumbers) {
     EXPECT_FLOAT_EQ(bilinear(level, u, 0)[0], 0) << u;
 }
 
-/// The stage with one thing of foreign models, drawn in lanes and by the definition.
-void expect_like_the_definition(const Stage& stage) {
-  ASSERT_EQ(layers::first_defect(stage.scene), "");
+/// The shaded with one thing of foreign models, drawn in lanes and by the definition.
+void expect_like_the_definition(const ShadeScene& shaded) {
+  ASSERT_EQ(layers::first_defect(shaded.scene), "");
   for (const Shading shading : {Shading::Flat, Shading::Gouraud, Shading::Phong})
     for (const bool mipmaps : {true, false}) {
       RenderOptions options = exact_options();
       options.shading = shading;
       options.mipmaps = mipmaps;
-      expect_same(stage.render({}, options).sprite, stage.reference({}, options),
+      expect_same(shaded.render({}, options).sprite, shaded.reference({}, options),
                   std::to_string(static_cast<int>(shading)) + (mipmaps ? " with mipmaps" : ""));
     }
 }
@@ -45,50 +45,50 @@ void expect_like_the_definition(const Stage& stage) {
 TEST(ForeignSurface, WrappedTexturesAreDrawnAsDefined) {
   for (const auto& [u, v] :
        {std::pair{Wrap::Clamp, Wrap::Mirror}, {Wrap::Repeat, Wrap::Clamp}, {Wrap::Mirror, Wrap::Repeat}}) {
-    Stage stage;
-    stage.scene.textures[0].wrap_u = u;
-    stage.scene.textures[0].wrap_v = v;
-    expect_like_the_definition(stage);
+    ShadeScene shaded;
+    shaded.scene.textures[0].wrap_u = u;
+    shaded.scene.textures[0].wrap_v = v;
+    expect_like_the_definition(shaded);
   }
 }
 
 TEST(ForeignSurface, NearestAndFinestTexturesAreDrawnAsDefined) {
-  Stage stage;
-  stage.scene.textures[0].nearest = true;
-  expect_like_the_definition(stage);
-  stage.scene.textures[0].finest = true;
-  expect_like_the_definition(stage);
+  ShadeScene shaded;
+  shaded.scene.textures[0].nearest = true;
+  expect_like_the_definition(shaded);
+  shaded.scene.textures[0].finest = true;
+  expect_like_the_definition(shaded);
 }
 
 TEST(ForeignSurface, EmissiveMapsAreDrawnAsDefined) {
-  Stage stage;
-  layers::Material& floor = stage.scene.materials[Stage::kFloor];
+  ShadeScene shaded;
+  layers::Material& floor = shaded.scene.materials[ShadeScene::kFloor];
   floor.emissive = {0.5f, 0.2f, 0};
   floor.emissive_texture = 1;
-  expect_like_the_definition(stage);
-  layers::Mesh& mesh = stage.scene.meshes[Stage::kFloor];
+  expect_like_the_definition(shaded);
+  layers::Mesh& mesh = shaded.scene.meshes[ShadeScene::kFloor];
   mesh.emissive_uvs = mesh.uvs;
   for (layers::vec2& uv : mesh.emissive_uvs) uv = 0.5f * uv + layers::vec2(0.1f, 0.2f);
-  expect_like_the_definition(stage);
+  expect_like_the_definition(shaded);
 }
 
 TEST(ForeignSurface, LampsThatFadeAreDrawnAsDefined) {
-  Stage stage;
-  stage.scene.lights[Stage::kSpot].attenuation = {0.2, 0.1, 0.05};
-  stage.scene.lights[Stage::kSpot].range_m = 6;
-  expect_like_the_definition(stage);
-  stage.scene.lights[Stage::kSpot].kind = layers::Light::Kind::Point;
-  expect_like_the_definition(stage);
+  ShadeScene shaded;
+  shaded.scene.lights[ShadeScene::kSpot].attenuation = {0.2, 0.1, 0.05};
+  shaded.scene.lights[ShadeScene::kSpot].range_m = 6;
+  expect_like_the_definition(shaded);
+  shaded.scene.lights[ShadeScene::kSpot].kind = layers::Light::Kind::Point;
+  expect_like_the_definition(shaded);
 }
 
 TEST(ForeignSurface, AlphaOfVerticesIsDrawnAsDefined) {
-  Stage stage;
-  layers::Mesh& mesh = stage.scene.meshes[Stage::kFloor];
+  ShadeScene shaded;
+  layers::Mesh& mesh = shaded.scene.meshes[ShadeScene::kFloor];
   mesh.colors.assign(mesh.positions.size(), vec3(0.9f));
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) mesh.alphas.push_back(i % 3 == 0 ? 0.25f : 1.0f);
-  expect_like_the_definition(stage);
-  stage.scene.materials[Stage::kFloor].alpha_cutoff = 0.6f;
-  expect_like_the_definition(stage);
+  expect_like_the_definition(shaded);
+  shaded.scene.materials[ShadeScene::kFloor].alpha_cutoff = 0.6f;
+  expect_like_the_definition(shaded);
 }
 
 /// A square that fills the picture, and the colour of its middle in linear light.

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "regulator/budget.h"
+#include "regulator/decision.h"
 #include "regulator/policies.h"
 
 namespace talisman::regulator {

@@ -18,7 +18,7 @@ double reference_polygons_per_frame(const Sequence& sequence, const Settings& se
   std::int64_t polygons = 0;
   for (int frame = frames.first; frame <= frames.last; ++frame) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
-    polygons += line_of(report).polygons_reference;
+    polygons += line_of(report).polygons.reference;
   }
   return static_cast<double>(polygons) / (frames.last - frames.first + 1);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The tool as a user meets it: exit codes, one clear error line, no half-written results, runs that can be
 // continued.
-#include <sys/wait.h>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -11,8 +10,6 @@
 
 #include "tests/sequences/commands/tool.h"
 
-#include "tests/sequences/temporary_folder.h"
-
 namespace talisman {
 namespace {
 
@@ -20,73 +17,6 @@ namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-struct Outcome {
-  int exit_code = -1;
-  std::string output;  ///< stdout and stderr
-};
-
-class Tool : public ::testing::Test {
- protected:
-  void SetUp() override { write("cube.obj", kCube); }
-
-  static std::string tool() {
-    return (fs::read_symlink("/proc/self/exe").parent_path() / "talisman").string();
-  }
-  std::string path(const std::string& name) const { return folder_ / name; }
-
-  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
-  std::string read(const std::string& name) const { return folder_.read(name); }
-
-  /// Runs "cd FOLDER && PREFIX talisman ARGUMENTS".
-  Outcome run(const std::string& arguments, const std::string& prefix = "") const {
-    return run_shell(prefix + " '" + tool() + "' " + arguments);
-  }
-  Outcome run_shell(const std::string& shell) const {
-    const std::string command = "cd '" + folder_.path() + "' && " + shell + " 2>&1";
-    std::FILE* pipe = popen(command.c_str(), "r");
-    Outcome outcome;
-    char buffer[4096];
-    for (std::size_t n; (n = std::fread(buffer, 1, sizeof buffer, pipe)) > 0;)
-      outcome.output.append(buffer, n);
-    const int status = pclose(pipe);
-    outcome.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-    return outcome;
-  }
-
-  /// Starts the tool and sends it a signal as soon as `file` is there.
-  Outcome run_and_signal(const std::string& arguments, const std::string& file,
-                         const std::string& signal) const {
-    write("start.sh", "'" + tool() + "' " + arguments + " & pid=$!\nwhile [ ! -e '" + file +
-                          "' ] && kill -0 $pid; do sleep 0.01; done\nkill -" + signal + " $pid\nwait $pid\n");
-    return run_shell("bash start.sh");
-  }
-
-  /// Expects exit code 2 and exactly one error line that holds all of `parts`.
-  void expect_bad_input(const std::string& arguments, const std::vector<std::string>& parts) const {
-    const Outcome outcome = run(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.output;
-    EXPECT_EQ(outcome.output.rfind("error: ", 0), 0u) << outcome.output;
-    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
-    for (const std::string& part : parts) EXPECT_THAT(outcome.output, HasSubstr(part)) << arguments;
-  }
-
-  std::set<std::string> files_in(const std::string& name) const { return tests::names_in(folder_ / name); }
-
-  std::vector<std::string> frame_hashes(const std::string& out) const {
-    std::vector<std::string> hashes;
-    std::ifstream in(folder_ / (out + "/frames.jsonl"));
-    for (std::string line; std::getline(in, line);)
-      hashes.push_back(nlohmann::json::parse(line)["frame_hash"]);
-    return hashes;
-  }
-
-  static constexpr const char* kCube =
-      "v -1 -1 -1\nv 1 -1 -1\nv 1 1 -1\nv -1 1 -1\nv -1 -1 1\nv 1 -1 1\nv 1 1 1\nv -1 1 1\n"
-      "f 5 6 7 8\nf 2 1 4 3\nf 6 2 3 7\nf 1 5 8 4\nf 8 7 3 4\nf 1 2 6 5\n";
-
-  tests::TemporaryFolder folder_;
-};
 
 TEST_F(Tool, RendersABareModel) {
   const Outcome outcome = run("render cube.obj --out o --frames 0-4 --size 64x48 --progress none");
