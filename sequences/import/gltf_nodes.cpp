@@ -3,9 +3,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include <Eigen/LU>
-#include <Eigen/SVD>
 #include <glm/geometric.hpp>
+#include <opencv2/core.hpp>
 
 #include "layers/layer.h"
 #include "sequences/import/gltf_scene.h"
@@ -31,24 +30,23 @@ glm::dquat rotation_of(const dvec3& x, const dvec3& y, const dvec3& z) {
   return glm::normalize(glm::quat_cast(dmat3(x, y, z)));
 }
 
-dvec3 column(const Eigen::Matrix3d& m, int k) { return {m(0, k), m(1, k), m(2, k)}; }
+dvec3 column(const cv::Matx33d& m, int k) { return {m(0, k), m(1, k), m(2, k)}; }
 
 /// M = (T U Σ) · Vᵀ with rotations U and V: any matrix is two transforms, one below the other. A reflection goes
 /// into Σ.
 void split(const dmat4& matrix, layers::Transform& outer, layers::Transform& inner) {
-  Eigen::Matrix3d m;
+  cv::Matx33d m, u, vt;
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) m(r, c) = matrix[c][r];
-  if (!m.allFinite()) throw InputError("a matrix is not finite");  // Eigen leaves the result unset
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Eigen::Matrix3d u = svd.matrixU(), v = svd.matrixV();
-  Eigen::Vector3d s = svd.singularValues();
-  if (u.determinant() < 0) u.col(2) *= -1, s(2) *= -1;
-  if (v.determinant() < 0) v.col(2) *= -1, s(2) *= -1;
+  if (!cv::checkRange(m)) throw InputError("a matrix is not finite");
+  cv::Matx31d s;
+  cv::SVD::compute(m, s, u, vt, cv::SVD::FULL_UV);
+  const cv::Matx33d v = vt.t();
+  const double u_side = cv::determinant(u) < 0 ? -1 : 1, v_side = cv::determinant(v) < 0 ? -1 : 1;
   outer.translation = dvec3(matrix[3]);
-  outer.rotation = rotation_of(column(u, 0), column(u, 1), column(u, 2));
-  outer.scale = {s(0), s(1), s(2)};
-  inner.rotation = glm::conjugate(rotation_of(column(v, 0), column(v, 1), column(v, 2)));
+  outer.rotation = rotation_of(column(u, 0), column(u, 1), u_side * column(u, 2));
+  outer.scale = {s(0), s(1), u_side * v_side * s(2)};
+  inner.rotation = glm::conjugate(rotation_of(column(v, 0), column(v, 1), v_side * column(v, 2)));
 }
 
 /// One transform, where the axes are at right angles; false where they are not, or one has no length.

@@ -148,7 +148,9 @@ LinearImage under(std::initializer_list<int> lights, const RenderOptions& option
   for (const int light : {ShadeScene::kSpot, ShadeScene::kSun})
     if (std::find(lights.begin(), lights.end(), light) == lights.end())
       shaded.scene.lights[light].color = vec3(0);
-  return shaded.linear(shaded.inputs(), options);
+  ShadeInputs inputs = shaded.inputs();
+  inputs.reflections = {};  // a picture in bytes, of another light each time
+  return shaded.linear(inputs, options);
 }
 
 // Light adds up [LS97 2.3]: a picture under two lamps is the sum of the pictures under one, each with its own

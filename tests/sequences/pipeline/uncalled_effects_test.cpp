@@ -163,6 +163,15 @@ double coarse_sprites(const WholeRun& run) {
   return count;
 }
 
+/// Morph weights are captured 16 to a matrix.
+std::size_t morph_matrices_of(const WholeRun& run, int layer) {
+  std::size_t weights = 0;
+  const layers::Scene& scene = *run.variant.sequence.scene;
+  for (const int part : run.state.layers[layer].parts)
+    weights += scene.meshes[scene.parts[part].mesh].morphs.size();
+  return (weights + 15) / 16;
+}
+
 /// Every number of a run that belongs to one effect, besides its passes.
 Numbers numbers_of(const WholeRun& run, Effect effect) {
   switch (effect) {
@@ -175,7 +184,8 @@ Numbers numbers_of(const WholeRun& run, Effect effect) {
       return {{"lights captured", sum_over_states(run, [](auto& s) { return s.lights.size(); })}};
     case Effect::Skinning:
       return {{"joints captured", sum_over_states(run, [&](auto& s) {
-                 return s.world_from_part.size() - run.state.layers[s.layer].parts.size();
+                 return s.world_from_part.size() - run.state.layers[s.layer].parts.size() -
+                        morph_matrices_of(run, s.layer);
                })}};
     case Effect::SpriteCompression:
       return of_compression(run);

@@ -74,7 +74,7 @@ TEST(RunIdentity, NamesEveryFileThatTheSequenceIsReadFrom) {
   std::set<std::string> names;
   for (const auto& [name, hash] : run["content"].items()) {
     names.insert(name);
-    EXPECT_EQ(hash.get<std::string>().size(), 40u) << name;
+    EXPECT_EQ(hash.get<std::string>().size(), 32u) << name;
   }
   EXPECT_EQ(names, kFiles);
 }
