@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/folder_lock.h"
 #include "sequences/files/frame_writer.h"
 #include "sequences/files/line_file.h"
 #include "sequences/files/video.h"
@@ -61,6 +62,7 @@ class Runner {
  public:
   Runner(const Sequence& sequence, const Settings& settings, const RunOptions& options)
       : options_(options),
+        lock_(options.out),
         pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)),
         state_(pipeline_) {
     KeptRun kept = begin_run(options, run_json(sequence, settings, options));
@@ -158,6 +160,7 @@ class Runner {
   }
 
   const RunOptions& options_;
+  FolderLock lock_;
   Pipeline pipeline_;
   PipelineState state_;
   std::map<int, FrameLine> kept_;

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 
+#include "sequences/files/folder_lock.h"
 #include "tests/sequences/commands/tool.h"
 
 namespace talisman {
@@ -178,6 +179,17 @@ TEST_F(RunFiles, OfAPlanGiveWayToThoseOfARender) {
   ASSERT_EQ(run("render --resume" + options).exit_code, 0);
   EXPECT_EQ(files_in("o/frames").size(), 5u);
   EXPECT_EQ(nlohmann::json::parse(read("o/run.json"))["kind"], "render");
+}
+
+// Two runs into one folder would write over each other: the second ends at once, and the first never knows.
+TEST_F(RunFiles, FolderOfAnotherRunIsLeftAlone) {
+  ASSERT_EQ(run("plan passing.yaml --progress none --out shared").exit_code, 0);
+  const std::string before = read("shared/decisions.jsonl");
+  const sequences::FolderLock other(path("shared"));
+  const Outcome refused = run("plan passing.yaml --progress none --geometric-px 9 --out shared");
+  EXPECT_EQ(refused.exit_code, 1);
+  EXPECT_THAT(refused.output, ::testing::HasSubstr("shared is being written by another run (process "));
+  EXPECT_EQ(read("shared/decisions.jsonl"), before);
 }
 
 }  // namespace
