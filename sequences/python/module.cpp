@@ -13,6 +13,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include "sequences/files/cache.h"
 #include "sequences/files/errors.h"
 #include "sequences/python/calls.h"
 #include "sequences/python/decision_columns.h"
@@ -106,6 +107,7 @@ py::array_t<std::uint8_t> render(const std::string& sequence, int frame, const W
 }  // namespace
 
 PYBIND11_MODULE(_talisman, module) {
+  talisman::sequences::use_cache({talisman::sequences::default_cache_folder()});  // as the tool does
   module.doc() = "What talisman/__init__.py is made of; not for others.";
   // Registered for this module alone; std::runtime_error is Python's RuntimeError already.
   py::register_local_exception_translator([](std::exception_ptr thrown) {
