@@ -10,25 +10,13 @@
 ///
 /// What is not finite is an empty cell, and null.
 
-#include <cmath>
-#include <cstdio>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/files/number_text.h"
+
 namespace talisman::sequences {
-
-/// Nine significant digits; empty where the value is not finite.
-inline std::string exact(double value) {
-  if (!std::isfinite(value)) return "";
-  char text[48];
-  std::snprintf(text, sizeof text, "%.9g", value);
-  return text;
-}
-
-inline nlohmann::ordered_json number_or_null(double value) {
-  return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-}
 
 template <typename Row>
 struct Column {
