@@ -115,7 +115,7 @@ TEST_F(CacheOptions, ProgramsAtTheSameTimeShareACache) {
 // A full device takes no byte; what a command printed there is lost, and it must not say that all is well.
 TEST(StandardOutput, ThatCannotBeWrittenIsExitCodeOne) {
   const std::string tool = (fs::read_symlink("/proc/self/exe").parent_path() / "talisman").string();
-  for (const char* words : {"inspect --profile", "--help", "inspect stage --json", "inspect --help"}) {
+  for (const char* words : {"inspect --profile", "--help", "inspect carousel --json", "inspect --help"}) {
     const std::string shell = "'" + tool + "' " + words + " 2>&1 >/dev/full";
     std::FILE* pipe = ::popen(shell.c_str(), "r");
     std::array<char, 1000> message{};
