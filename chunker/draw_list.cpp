@@ -260,6 +260,7 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
   list.size_px = placement.empty() ? layers::ivec2{0, 0} : placement.size_px;
   if (any_lit(scene, parts)) list.lights = light_set(frame, inputs);
   list.term = inputs.term;
+  list.adds = inputs.lights == LightsHeld::One;
   for (const Reflection& r : inputs.reflections)
     list.reflections.push_back({r.picture, r.picture_from_screen * placement.screen_from_sprite});
   list.batches.reserve(parts.size());

@@ -29,6 +29,7 @@ struct DrawList {
   LightSet lights;                            ///< shaders refer to it: a list is not copied
   std::vector<ReflectionLookup> reflections;  ///< likewise, one per ShadeInputs::reflections
   ShadeTerm term = ShadeTerm::Full;
+  bool adds = false;  ///< LightsHeld::One: the picture has no alpha
   std::vector<Batch> batches;
   std::vector<Triangle> triangles;
   std::int64_t polygons_in = 0;

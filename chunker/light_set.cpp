@@ -26,7 +26,8 @@ bool wants_shadows(ShadeTerm term) {
 /// The place of the light's map in the set, or -1.
 int add_shadow(const ShadeInputs& inputs, std::size_t light, LightSet& set) {
   if constexpr (!layers::is_built(layers::Effect::ShadowMap)) return -1;
-  if (!wants_shadows(inputs.term) || light >= inputs.shadow_maps.size()) return -1;
+  if (!(wants_shadows(inputs.term) || inputs.lights == LightsHeld::One) || light >= inputs.shadow_maps.size())
+    return -1;
   const bool other = inputs.light >= 0 && static_cast<std::size_t>(inputs.light) != light;
   if (inputs.term == ShadeTerm::Shadow && other) return -1;
   const ShadowMap* map = inputs.shadow_maps[light];
@@ -71,7 +72,9 @@ LightSet light_set(const layers::SceneFrame& frame, const ShadeInputs& inputs) {
     const layers::LightState& light = frame.lights[i];
     if (!finite(light)) continue;
     const bool other = inputs.light >= 0 && static_cast<std::size_t>(inputs.light) != i;
-    if (inputs.term == ShadeTerm::Specular && other) continue;
+    const bool one = inputs.term == ShadeTerm::Specular || inputs.lights == LightsHeld::One;
+    if (one && other) continue;
+    if (inputs.lights == LightsHeld::Unmapped && light.casts_shadow) continue;
     const Float4 color = float4(light.color);
     switch (light.kind) {
       case layers::Light::Kind::Ambient:

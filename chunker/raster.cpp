@@ -42,7 +42,7 @@ void ChunkRenderer<kCount>::draw_box(std::span<const std::uint32_t> triangles, c
 
 template <int kCount>
 void ChunkRenderer<kCount>::finish_row(std::span<Float4> row, int x0, int y, Chunk& out) const {
-  finish_term(list_.term, row);
+  finish_term(list_.term, list_.adds, row);
   if (linear_ == nullptr) {
     encode_row(row.data(), static_cast<int>(row.size()), &out.texels[y * kChunkSize + x0]);
     return;

@@ -104,7 +104,7 @@ Float4 mean(std::span<const Float4> samples) {
 
 Texel texel_at(const DrawList& list, const std::vector<int>& places, int x, int y) {
   Float4 color = mean(samples_of(list, places, x, y));
-  finish_term(list.term, {&color, 1});
+  finish_term(list.term, list.adds, {&color, 1});
   return encode({color[0], color[1], color[2], color[3]});
 }
 

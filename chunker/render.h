@@ -116,6 +116,14 @@ enum class ShadeTerm {
   Texture2,
 };
 
+/// Which lights a picture holds.
+enum class LightsHeld {
+  All,       ///< each seen through its map
+  Unmapped,  ///< ambient light, and those that cast no shadow
+  One,       ///< ShadeInputs::light alone, through its map; no ambient light, no emission, and alpha 0: `over`
+             ///< adds it. In Full, Base, Texture1 and Texture2
+};
+
 /// What one mirror shows: the scene as its mirrored camera sees it (chunker/mirror.h).
 struct Reflection {
   const Sprite* picture = nullptr;      ///< null: nothing
@@ -134,8 +142,10 @@ struct ShadeInputs {
   ShadeTerm term = ShadeTerm::Full;
   /// By index of Scene::lights. Shorter, or null: that light casts no shadow. Used by Full, Shadow, Specular.
   std::span<const ShadowMap* const> shadow_maps;
-  /// Index of the one light whose shadow or highlight is drawn; -1: of all. Used by Shadow and Specular.
+  /// Index of the one light whose shadow or highlight is drawn; -1: of all. Used by Shadow, Specular and
+  /// LightsHeld::One.
   int light = -1;
+  LightsHeld lights = LightsHeld::All;
   /// A part looks up the first that names it. Used by Full and Reflection.
   std::span<const Reflection> reflections;
   /// Likewise. Used by Full and Base.

@@ -77,8 +77,9 @@ void choose_emission(const PreparedScene& prepared, const layers::Material& mate
 }
 
 /// Does the part show anything in this term, apart from hiding what is behind it?
-bool contributes(const Shader& shader, const layers::Material& material, ShadeTerm term) {
-  switch (term) {
+bool contributes(const Shader& shader, const layers::Material& material, const ShadeInputs& inputs) {
+  if (inputs.lights == LightsHeld::One && (material.unlit || shader.lights->ambient_only())) return false;
+  switch (inputs.term) {
     case ShadeTerm::Full:
     case ShadeTerm::Base:
     case ShadeTerm::Texture1:
@@ -104,19 +105,20 @@ void choose_reflection(const layers::Material& material, ShadeTerm term, const R
 }
 
 void choose_lighting(const layers::Material& material, bool has_normals, const RenderOptions& options,
-                     ShadeTerm term, Shader& shader) {
-  const bool full = term == ShadeTerm::Full;
+                     const ShadeInputs& inputs, Shader& shader) {
+  const ShadeTerm term = inputs.term;
+  const bool full = term == ShadeTerm::Full, one = inputs.lights == LightsHeld::One;
   shader.lit = !shader.lights->ambient_only() && term != ShadeTerm::Reflection;
   if (!shader.lit) shader.base *= shader.lights->ambient;
-  if (term != ShadeTerm::Texture2) shader.emissive = float4(material.emissive);
+  if (term != ShadeTerm::Texture2 && !one) shader.emissive = float4(material.emissive);
   shader.specular = float4(material.specular);
   shader.shininess = material.shininess > 0 ? material.shininess : 0;
   shader.has_specular =
       shader.lit && (full || term == ShadeTerm::Specular) && material.specular != vec3(0, 0, 0);
   // Faces without vertex normals have only their own: there is nothing to interpolate.
   shader.per_pixel = shader.lit && options.shading == Shading::Phong && has_normals;
-  shader.shadowed =
-      shader.lit && shader.lights->shadows > 0 && (full || term == ShadeTerm::Shadow || shader.has_specular);
+  shader.shadowed = shader.lit && shader.lights->shadows > 0 &&
+                    (full || one || term == ShadeTerm::Shadow || shader.has_specular);
   shader.shadow_term = term == ShadeTerm::Shadow;
 }
 
@@ -287,12 +289,11 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
                   own.texture_blend.value_or(material.texture_blend), shader);
   choose_alpha(material, mesh, shader);
   choose_reflection(material, inputs.term, own.reflection, shader);
-  const bool shown = contributes(shader, material, inputs.term);
+  const bool shown = contributes(shader, material, inputs);
   const bool colored = shown && inputs.term != ShadeTerm::Shadow && inputs.term != ShadeTerm::Specular &&
                        inputs.term != ShadeTerm::Reflection;
   shader.base = colored ? float4(material.base_color, 1) : Float4{0, 0, 0, 1};
-  if (shown && !material.unlit)
-    choose_lighting(material, !mesh.normals.empty(), options, inputs.term, shader);
+  if (shown && !material.unlit) choose_lighting(material, !mesh.normals.empty(), options, inputs, shader);
   if (!colored) shader.emissive = splat(0);
   choose_emission(prepared, material, mesh, shader);
   shader.layout = choose_layout(shader, colored && !mesh.colors.empty());
@@ -396,11 +397,13 @@ Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy) {
          opacity;
 }
 
-void finish_term(ShadeTerm term, std::span<Float4> texels) {
+void finish_term(ShadeTerm term, bool adds, std::span<Float4> texels) {
   switch (term) {
     case ShadeTerm::Full:
     case ShadeTerm::Base:
     case ShadeTerm::Texture1:
+      if (adds)
+        for (Float4& texel : texels) texel[3] = 0;
       return;
     case ShadeTerm::Shadow:
       for (Float4& texel : texels) texel = Float4{0, 0, 0, texel[0]};

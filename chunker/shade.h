@@ -36,6 +36,9 @@
 /// alpha, so that visibility is the same in every term; the shadow's (1 - s) α stands in red, and only the
 /// resolved texel is turned into what the sprite holds.
 ///
+/// Light by light (LightsHeld): `Unmapped` and `One` of every light that casts add up to the term with `All` of
+/// them, texel by texel, since means of sums are sums of means.
+///
 /// A `Shader` is one part's material and lights, reduced to what this part needs: it says which attributes
 /// its vertices carry, and an attribute that the material does not use is neither stored nor interpolated.
 /// Flat shading evaluates the formula once per triangle, Gouraud once per vertex, Phong once per pixel.
@@ -287,7 +290,7 @@ inline Lighting interpolated_lighting(const Shader& shader, const Interpolator& 
 Float4 shade(const Shader& shader, const Interpolator& t, float dx, float dy);
 
 /// Turns resolved texels into what a sprite of this term holds: colour over coverage stays as it is, what is
-/// added has alpha 0, and the shadow's alpha comes out of red.
-void finish_term(ShadeTerm term, std::span<Float4> texels);
+/// added (a term that is, or one light of any) has alpha 0, and the shadow's alpha comes out of red.
+void finish_term(ShadeTerm term, bool adds, std::span<Float4> texels);
 
 }  // namespace talisman::chunker

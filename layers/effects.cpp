@@ -147,14 +147,17 @@ std::string call_of(const Context& context, const Layer& layer, Effect effect) {
     case Effect::VisibilitySort:
       return call_of_visibility_sort(context.layers, layer);
     case Effect::ColorWarp:
-      return layer.base < 0 && context.run.follows_light ? light_change_of(scene, layer, context.carriers).why
-                                                         : "";
+      return (layer.base < 0 || layer.kind == LayerKind::Light) && context.run.follows_light
+                 ? light_change_of(scene, layer, context.carriers).why
+                 : "";
     case Effect::MipFilter:
       if (!context.run.mip_filter) return {};
       break;
     case Effect::ShadowMap:
       return layer.holds.shadows ? "shadows fall on " + quoted("layer", layer.name) : "";
     case Effect::ShadowLayer:
+      if (layer.kind == LayerKind::Light)
+        return shade_call(layer, LayerKind::Light, "the light of " + light_of(scene, layer.light));
       return layer.kind == LayerKind::Shadow
                  ? shade_call(layer, LayerKind::Shadow, "the shadows of " + light_of(scene, layer.light))
                  : "";

@@ -42,12 +42,19 @@ struct LayerPreferences {
 /// What a layer's sprite holds [LS97 2.3]. A geometry layer is a surface as it looks; the others are shade
 /// layers, one term of the shading of their base layer, scan-converted over the same surface and composited
 /// directly in front of it (layers/shading.h).
-enum class LayerKind { Geometry, Shadow, Specular, Reflection, Texture };
+enum class LayerKind { Geometry, Shadow, Specular, Reflection, Texture, Light };
+
+/// How the shadows of a layer are factored (layers/shading.h).
+enum class ShadowsAs {
+  Shade,  ///< black over all of the surface's light, one per light: exact for one light, or lights of one hue
+  Light,  ///< what each light adds where it is seen, one per light: exact for any lights
+};
 
 /// The terms of its shading that get sprites of their own, each with its own preferences (0.5 of the
 /// resolution for a blurry shadow); a term that is empty stays in the layer's own sprite.
 struct ShadingSpec {
   std::optional<LayerPreferences> shadows;     ///< a layer per light that casts shadows
+  std::optional<ShadowsAs> shadows_as{};       ///< empty: as suits the lights that reach the layer
   std::optional<LayerPreferences> specular;    ///< the highlights of all lights
   std::optional<LayerPreferences> reflection;  ///< flat surfaces only
   std::optional<LayerPreferences> textures;    ///< the second texture of each material
@@ -100,9 +107,11 @@ struct Layer {
   int rigid_node =
       -1;          ///< the node that all parts follow rigidly; -1: they move against each other or deform
   int base = -1;   ///< shade layers: id of the geometry layer whose surface this is a term of
-  int light = -1;  ///< Shadow: index into Scene::lights
+  int light = -1;  ///< Shadow, Light: index into Scene::lights
   HeldTerms holds;
-  HeldTerms factored;          ///< Geometry: the terms that are called for and in shade layers of its own
+  HeldTerms factored;  ///< Geometry, and Light of its base: the terms that are called for and in shade layers
+  /// Of a surface that factors its shadows, and of its shade layers: how.
+  std::optional<ShadowsAs> shadows_as{};
   std::vector<int> casters;    ///< holds.shadows: ids of the geometry layers whose shadows may fall on it
   std::vector<int> reflected;  ///< holds.reflection: ids of the geometry layers that it mirrors
   /// Where that matters and is so: all of it (with a reflection: all that reflects) lies in one plane.

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layers/light_change.h"
 
-#include <algorithm>
+#include <vector>
+
+#include "layers/shading.h"
 
 namespace talisman::layers {
 namespace {
@@ -26,23 +28,25 @@ int camera_node(const Scene& scene) {
 LightChange light_change_of(const Scene& scene, const Layer& layer, std::span<const int> carriers) {
   static const Material plain;
   bool lit = false;
-  const bool has_source = std::any_of(scene.lights.begin(), scene.lights.end(),
-                                      [](const Light& light) { return light.kind != Light::Kind::Ambient; });
+  std::vector<const Light*> sources;
+  for (std::size_t i = 0; i < scene.lights.size(); ++i)
+    if (scene.lights[i].kind != Light::Kind::Ambient && holds_light(scene, layer, static_cast<int>(i)))
+      sources.push_back(&scene.lights[i]);
   for (const int index : layer.parts) {
     const Part& part = scene.parts[index];
     const Material& material = part.material >= 0 ? scene.materials[part.material] : plain;
     if (material.unlit) continue;
     lit = true;
-    for (const Light& light : scene.lights)
-      if (light.kind != Light::Kind::Ambient && move_against_each_other(scene, part, light.node, carriers))
-        return {"part '" + part.name + "' and light '" + light.name + "' move against each other", ""};
-    if (has_source && !is_black(material.specular) &&
+    for (const Light* light : sources)
+      if (move_against_each_other(scene, part, light->node, carriers))
+        return {"part '" + part.name + "' and light '" + light->name + "' move against each other", ""};
+    if (!sources.empty() && !is_black(material.specular) &&
         move_against_each_other(scene, part, camera_node(scene), carriers))
       return {"part '" + part.name + "' is specular and moves against the eye", ""};
   }
   if (!lit) return {"", "no part of the layer is lit"};
   if (scene.lights.empty()) return {"", "the scene has no light"};
-  if (!has_source) return {"", "the only light is ambient"};
+  if (sources.empty()) return {"", "the only light is ambient"};
   return {"", "no light moves against the layer, and no highlight moves on it"};
 }
 

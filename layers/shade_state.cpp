@@ -243,6 +243,7 @@ void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<
   for (const Layer& layer : set.layers) {
     LayerState& state = states[layer.id];
     if (state.layer != layer.id) continue;  // an aggregate that does not exist now
+    if (layer.base >= 0 && !state.lights.empty()) state.lights = lights_on(frame, layer);
     if (mirrors_lit_parts(*frame.scene, set, layer)) state.lights = frame.lights;
     if (!looks_up_shadows(layer) && layer.reflected.empty() && !is_highlight(layer) &&
         !blends_textures(set, layer))

@@ -136,6 +136,7 @@ Layer shade_layer(const Layer& base, LayerKind kind, const std::string& name,
   layer.base = base.id;
   layer.plane = base.plane;
   layer.fade = base.fade;
+  layer.shadows_as = base.shadows_as;
   return layer;
 }
 
@@ -170,9 +171,10 @@ class Factoring {
   Factoring(const Scene& scene, const LayerSpec& spec, Layer& base)
       : scene_(scene), spec_(spec), base_(base) {
     const HeldTerms called = base.holds, terms = terms_to_factor(spec.shading, called);
+    if (terms.shadows) base.shadows_as = spec.shading.shadows_as.value_or(shadows_for(scene, base));
     if (terms.second_texture) add_second_texture();
     if (terms.shadows)
-      for (const int light : casting_lights(scene)) add_shadow(light);
+      for (const int light : casting_lights(scene)) add_shadow(light, called, terms);
     if (terms.specular) {
       add(LayerKind::Specular, "specular", spec.shading.specular).holds.specular = true;
       shades_.back().holds.shadows = called.shadows;
@@ -197,15 +199,35 @@ class Factoring {
     const vec2 blend = material_blend(scene_, base_);
     Layer& layer = add(LayerKind::Texture, "texture 2", shading.textures);
     layer.holds.second_texture = true;
-    layer.gain = shading.second_blend.values.empty() ? constant(blend.y) : shading.second_blend;
+    layer.gain = second_gain_ =
+        shading.second_blend.values.empty() ? constant(blend.y) : shading.second_blend;
     base_.gain = shading.first_blend.values.empty() ? constant(blend.x) : shading.first_blend;
   }
 
-  void add_shadow(int light) {
-    Layer& layer = add(LayerKind::Shadow, "shadow of " + light_name(scene_, light), spec_.shading.shadows);
+  void add_shadow(int light, const HeldTerms& called, const HeldTerms& terms) {
+    if (base_.shadows_as == ShadowsAs::Shade) {
+      add_seen_light(LayerKind::Shadow, "shadow of " + light_name(scene_, light), light);
+      return;
+    }
+    const std::string name = "light of " + light_name(scene_, light);
+    Layer& first = add_seen_light(LayerKind::Light, name, light);
+    first.gain = base_.gain;
+    first.holds.specular = called.specular && !terms.specular;
+    first.holds.second_texture = called.second_texture && !terms.second_texture;
+    first.factored = terms;
+    if (!terms.second_texture) return;
+    Layer& second = add_seen_light(LayerKind::Light, name + ", texture 2", light);
+    second.gain = second_gain_;
+    second.holds.second_texture = true;
+    second.factored = terms;
+  }
+
+  Layer& add_seen_light(LayerKind kind, const std::string& name, int light) {
+    Layer& layer = add(kind, name, spec_.shading.shadows);
     layer.light = light;
     layer.holds.shadows = true;
     layer.casters = base_.casters;
+    return layer;
   }
 
   void leave_behind(const HeldTerms& called, const HeldTerms& terms) {
@@ -219,6 +241,7 @@ class Factoring {
   const Scene& scene_;
   const LayerSpec& spec_;
   Layer& base_;
+  Keys<double> second_gain_;  ///< multiplier of what holds the second texture
   std::vector<Layer> shades_;
 };
 
@@ -300,6 +323,13 @@ std::string reflection_defect(const Scene& scene, const Layer& layer) {
   if (layer.rigid_node < 0) return "its parts move against each other or deform";
   if (!common_plane(scene, mirrors, layer.rigid_node)) return "what reflects in it is not flat";
   return {};
+}
+
+bool holds_light(const Scene& scene, const Layer& layer, int light) {
+  if (layer.kind == LayerKind::Light) return layer.light == light;
+  const bool left_out = layer.shadows_as == ShadowsAs::Light &&
+                        (layer.kind == LayerKind::Geometry || layer.kind == LayerKind::Texture);
+  return !(left_out && scene.lights[light].casts_shadow);
 }
 
 std::vector<int> casting_parts(const Scene& scene, std::span<const Layer> layers) {

@@ -8,12 +8,26 @@
 ///
 ///   base        ambient + diffuse + emissive, first texture     over
 ///   texture     (N·L) T₂                                        + (over with alpha 0)
-///   shadow      black with alpha (1 - s) β, one per light       over
-///   specular    highlights, dimmed where their light's s is     +
+///   shadow      black with alpha (1 - s) β, one per light       over     (as shade)
+///   light       v (N·L) T: where the light is seen, one each    +        (as light)
+///   specular    highlights, dimmed where their light's v is     +
 ///   reflection  reflectivity × mirrored picture                 +
 ///
 /// They lie in this order in front of their base, so that a shadow darkens both textures but neither
-/// highlights nor reflections, as in the unfactored expression  Π s · (B + T₂) + Σ s · specular + reflection.
+/// highlights nor reflections.
+///
+/// As *light*, base and second texture hold only what ambient light, emission and lights without shadow give;
+/// each light that casts adds its own, albedo and all, through `over` with alpha 0. That is the sum
+/// Σ v_l (D_l + S_l) itself, exact for any number of lights of any hue, whole cover or not, and each sprite
+/// depends on its own light alone. It costs bytes where light is, and eight bits round each sprite by itself:
+/// √x/255 of linear light x. Highlights that are not factored are with their lights. Of a second texture that
+/// is factored every light has a sprite too. Sums above 1 saturate at 1 in the compositor, as they do in a
+/// sprite; only a fade of a sum above 1 tells them apart: it fades each sprite before the sum is cut off.
+///
+/// As *shade*, s is the share that is left of the luminance of all lights: one number for three channels, and
+/// one factor per light where light is a sum. Exact for one light, and ambient light of its hue, on a surface
+/// that does not glow; there it is one sprite of alpha alone. Where the author leaves it open that is where
+/// shade is chosen, and light everywhere else (`shadows_for`).
 ///
 /// Effects on demand: a term that nothing calls for makes no layer and is not held by any sprite.
 ///
@@ -49,6 +63,19 @@ std::optional<SurfacePlane> common_plane(const Scene& scene, std::span<const int
 
 /// Why the layer's reflective parts cannot mirror, or empty.
 std::string reflection_defect(const Scene& scene, const Layer& layer);
+
+/// May the light reach the layer at some time? Its colour, its range, its cone and the side that a flat surface
+/// turns to it are looked at, at 33 times over the scene's motion; what stands between is not. Cost:
+/// O(vertices) at each.
+bool reaches(const Scene& scene, const Layer& layer, int light);
+
+/// How the shadows of a layer are factored where its author does not say: Light where more than one light
+/// reaches it, ambient light of another hue and the surface's own emission included; else Shade.
+ShadowsAs shadows_for(const Scene& scene, const Layer& layer);
+
+/// Does the sprite of `layer` hold what this light gives? Shade layers and surfaces hold all lights, but for
+/// those that shadows as light have taken out.
+bool holds_light(const Scene& scene, const Layer& layer, int light);
 
 /// The parts that some sprite's shadows come from, ascending: what is drawn into the shadow maps.
 std::vector<int> casting_parts(const Scene& scene, std::span<const Layer> layers);

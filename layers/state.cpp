@@ -164,7 +164,7 @@ void FrameCapture::capture(const Layer& layer, const LayerBound& bound, LayerSta
   state.camera = frame_.camera;
   append_part_matrices(frame_, layer.parts, state.world_from_part);
   const bool any_light = is_built(Effect::Lighting) && !frame_.lights.empty();
-  if (any_light && any_part(*frame_.scene, layer, is_lit)) state.lights = frame_.lights;
+  if (any_light && any_part(*frame_.scene, layer, is_lit)) state.lights = lights_on(frame_, layer);
   capture_points(bound, state);
   capture_shading(bound, state);
   if (!state.clip_points.empty()) capture_bounds(bound.hull, state);
@@ -188,6 +188,15 @@ void append_part_matrices(const SceneFrame& frame, std::span<const int> parts, s
     const auto palette = joint_palette(frame, scene.parts[part]);
     matrices.insert(matrices.end(), palette.begin(), palette.end());
   }
+}
+
+std::vector<LightState> lights_on(const SceneFrame& frame, const Layer& layer) {
+  LightState none;
+  none.color = {0, 0, 0};
+  std::vector<LightState> lights = frame.lights;
+  for (std::size_t i = 0; i < lights.size(); ++i)
+    if (!holds_light(*frame.scene, layer, static_cast<int>(i))) lights[i] = none;
+  return lights;
 }
 
 std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> parts) {

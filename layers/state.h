@@ -122,6 +122,10 @@ class FrameCapture {
 /// adds O(triangles · 5); a bound with a surface O(triangles + points · lights).
 LayerState capture(const SceneFrame& frame, const Layer& layer, const LayerBound& bound, const View& view);
 
+/// The scene's lights as they act on the layer's sprite, by index: one that it does not hold (layers/shading.h)
+/// is black, and the same whatever it does.
+std::vector<LightState> lights_on(const SceneFrame& frame, const Layer& layer);
+
 /// World matrices of the nodes of `parts`, morph weights (16 to a matrix) and joint palettes of those that have
 /// them appended: all that moves them.
 std::vector<dmat4> part_matrices(const SceneFrame& frame, std::span<const int> parts);

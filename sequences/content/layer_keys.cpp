@@ -75,12 +75,35 @@ Format<layers::Keys<double>> multiplier() {
   return {either_type({constant.type, varying.type}), read};
 }
 
+struct ShadowKeys {
+  LayerPreferences preferences;
+  std::optional<layers::ShadowsAs> as;
+};
+
+const Table<ShadowKeys>& shadow_keys() {
+  using enum layers::ShadowsAs;
+  static const Table<ShadowKeys> table =
+      Table<ShadowKeys>("shadows")
+          .key("as", &ShadowKeys::as, choice<layers::ShadowsAs>({{"shade", Shade}, {"light", Light}}), "",
+               "black over the surface, or the light of each light that casts, added to the rest")
+          .otherwise("`light` where more than one light reaches the layer, else `shade`")
+          .include(&ShadowKeys::preferences, preference_keys());
+  return table;
+}
+
 const Table<ShadingSpec>& shading_keys() {
   using S = ShadingSpec;
   const auto own = map_of(preference_keys());
   static const Table<S> table =
       Table<S>("shading")
-          .key("shadows", &S::shadows, own, "", "one layer per light that casts, with these preferences")
+          .custom(
+              "shadows", map_type(shadow_keys().keys()),
+              [](const YamlValue& value, S& shading) {
+                const ShadowKeys keys = shadow_keys().read(value);
+                shading.shadows = keys.preferences;
+                shading.shadows_as = keys.as;
+              },
+              "", "one layer per light that casts, with these preferences")
           .key("specular", &S::specular, own, "", "a layer of the highlights")
           .key("reflection", &S::reflection, own, "", "a layer of what a flat surface mirrors")
           .key("textures", &S::textures, own, "", "a layer of the second texture")

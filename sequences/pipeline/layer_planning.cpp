@@ -175,7 +175,7 @@ const std::vector<LayerState>& captured_states(const Pipeline& pipeline, Pipelin
       scene_frame = scene_as_known(pipeline, state, frame);
       capture.emplace(*scene_frame, pipeline.settings.view);
     }
-    if (layer.base >= 0)
+    if (layer.base >= 0 && layer.kind != layers::LayerKind::Light)  // which is lit by a light of its own
       layer_state = layers::shade_state(captured.states[layer.base], layer);
     else
       capture->capture(layer, state.layers.bound(layer.id), layer_state);

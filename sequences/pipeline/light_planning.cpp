@@ -25,11 +25,13 @@ layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const lay
   bound.surface_why_not = "no option follows the light";
   if (!regulator::follows_light(options)) return bound;
   bound.surface_why_not = "a shade layer follows where its term lies";
-  if (layer.base >= 0) return bound;
+  const bool is_light = layer.kind == layers::LayerKind::Light;
+  if (layer.base >= 0 && !is_light) return bound;
   const layers::LightChange change = layers::light_change_of(pipeline.scene, layer, pipeline.moving_carriers);
   bound.surface_why_not = change.why_not;
   if (!layers::is_built(layers::Effect::ColorWarp) || !change.possible()) return bound;
   bound.surface = layers::mean_surface(pipeline.scene, layer);
+  if (is_light) bound.surface->constant = layers::dvec3(0.0);
   if (layer.factored.specular) bound.surface->specular = layers::dvec3(0.0);  // in a sprite of its own
   return bound;
 }

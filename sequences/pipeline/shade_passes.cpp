@@ -46,8 +46,20 @@ ShadeTerm term_of(const Layer& layer) {
       return ShadeTerm::Reflection;
     case LayerKind::Texture:
       return ShadeTerm::Texture2;
+    case LayerKind::Light:
+      if (kTextureLayers && layer.factored.second_texture)
+        return layer.holds.second_texture ? ShadeTerm::Texture2 : ShadeTerm::Texture1;
+      return layers::is_built(layers::Effect::SpecularLayer) && layer.factored.specular ? ShadeTerm::Base
+                                                                                        : ShadeTerm::Full;
   }
   return ShadeTerm::Full;
+}
+
+chunker::LightsHeld lights_of(const Layer& layer) {
+  if (layer.kind == LayerKind::Light) return chunker::LightsHeld::One;
+  const bool elsewhere = layer.shadows_as == layers::ShadowsAs::Light &&
+                         (layer.kind == LayerKind::Geometry || layer.kind == LayerKind::Texture);
+  return kShadows && elsewhere ? chunker::LightsHeld::Unmapped : chunker::LightsHeld::All;
 }
 
 /// Pointers to the maps of `lights`, by index of Scene::lights.
@@ -139,6 +151,7 @@ struct Contents {
   std::vector<int> parts;
   ShadeTerm term = ShadeTerm::Full;
   int light = -1;
+  chunker::LightsHeld lights = chunker::LightsHeld::All;
   bool shadows = false;
   std::vector<const Layer*> mirrors;
   std::vector<chunker::TextureBlend> blends;
@@ -178,7 +191,7 @@ Contents contents_of(const LayerSet& set, const Layer& layer, double time_s) {
     return contents;
   }
   const bool shadows = kShadows && layer.holds.shadows;
-  return {layer.parts, term_of(layer), layer.light, shadows, mirrors_in(set, layer), {}};
+  return {layer.parts, term_of(layer), layer.light, lights_of(layer), shadows, mirrors_in(set, layer), {}};
 }
 
 /// What drawing `contents` looks up, kept as long as it is drawn.
@@ -187,6 +200,7 @@ class LookedUp {
   LookedUp(const Drawing& drawing, const Contents& contents, const SpritePlacement& placement) {
     inputs_.term = contents.term;
     inputs_.light = contents.light;
+    inputs_.lights = contents.lights;
     inputs_.texture_blends = contents.blends;
     if (contents.shadows)
       by_light_ = maps_for(drawing, lights_with_maps(drawing.pipeline.scene, contents.light));
