@@ -120,8 +120,8 @@ enum class ShadeTerm {
 enum class LightsHeld {
   All,       ///< each seen through its map
   Unmapped,  ///< ambient light, and those that cast no shadow
-  One,       ///< ShadeInputs::light alone, through its map; no ambient light, no emission, and alpha 0: `over`
-             ///< adds it. In Full, Base, Texture1 and Texture2
+  One,  ///< ShadeInputs::light alone, through its map; no ambient light, no emission, and alpha 0: `over`
+        ///< adds it. In Full, Base, Texture1 and Texture2
 };
 
 /// What one mirror shows: the scene as its mirrored camera sees it (chunker/mirror.h).

@@ -96,6 +96,8 @@ std::string spec_defect(const LayerSpec& spec) {
   std::string defect = preferences_defect(spec.preferences);
   for (const auto* term : {&shading.shadows, &shading.specular, &shading.reflection, &shading.textures})
     if (defect.empty() && *term) defect = preferences_defect(**term);
+  if (defect.empty() && shading.textures && shading.shadows_as == ShadowsAs::Multiply)
+    defect = "shadows as multiply hold for one blend of textures, rule: not together with textures";
   if (defect.empty()) defect = multiplier_defect("fade", spec.fade);
   if (defect.empty()) defect = multiplier_defect("blend", shading.first_blend);
   if (defect.empty()) defect = multiplier_defect("blend", shading.second_blend);

@@ -48,7 +48,13 @@ enum class LayerKind { Geometry, Shadow, Specular, Reflection, Texture, Light };
 enum class ShadowsAs {
   Shade,  ///< black over all of the surface's light, one per light: exact for one light, or lights of one hue
   Light,  ///< what each light adds where it is seen, one per light: exact for any lights
+  // With the extended compositor (sequences/pipeline/extended_composite.h), on the surface alone:
+  Multiply,  ///< the share that is left of all light, per channel, times the surface: exact for any lights
+  Atop,  ///< as Shade, atop the surface instead of over what is there: also right where cover is not whole
 };
+
+/// Does it ask for operators that `over` alone is not?
+inline bool needs_registers(ShadowsAs as) { return as == ShadowsAs::Multiply || as == ShadowsAs::Atop; }
 
 /// The terms of its shading that get sprites of their own, each with its own preferences (0.5 of the
 /// resolution for a blurry shadow); a term that is empty stays in the layer's own sprite.
@@ -109,7 +115,8 @@ struct Layer {
   int base = -1;   ///< shade layers: id of the geometry layer whose surface this is a term of
   int light = -1;  ///< Shadow, Light: index into Scene::lights
   HeldTerms holds;
-  HeldTerms factored;  ///< Geometry, and Light of its base: the terms that are called for and in shade layers
+  HeldTerms
+      factored;  ///< Geometry, and Light and Shadow of their base: the terms that are called for and in shade layers
   /// Of a surface that factors its shadows, and of its shade layers: how.
   std::optional<ShadowsAs> shadows_as{};
   std::vector<int> casters;    ///< holds.shadows: ids of the geometry layers whose shadows may fall on it

@@ -173,8 +173,7 @@ class Factoring {
     const HeldTerms called = base.holds, terms = terms_to_factor(spec.shading, called);
     if (terms.shadows) base.shadows_as = spec.shading.shadows_as.value_or(shadows_for(scene, base));
     if (terms.second_texture) add_second_texture();
-    if (terms.shadows)
-      for (const int light : casting_lights(scene)) add_shadow(light, called, terms);
+    if (terms.shadows) add_shadows(called, terms);
     if (terms.specular) {
       add(LayerKind::Specular, "specular", spec.shading.specular).holds.specular = true;
       shades_.back().holds.shadows = called.shadows;
@@ -204,27 +203,38 @@ class Factoring {
     base_.gain = shading.first_blend.values.empty() ? constant(blend.x) : shading.first_blend;
   }
 
-  void add_shadow(int light, const HeldTerms& called, const HeldTerms& terms) {
-    if (base_.shadows_as == ShadowsAs::Shade) {
-      add_seen_light(LayerKind::Shadow, "shadow of " + light_name(scene_, light), light);
+  void add_shadows(const HeldTerms& called, const HeldTerms& terms) {
+    if (base_.shadows_as == ShadowsAs::Multiply) {
+      add_seen_light(LayerKind::Shadow, "shadows", -1, terms).fade = {};
       return;
     }
+    for (const int light : casting_lights(scene_)) {
+      const std::string name = light_name(scene_, light);
+      if (base_.shadows_as == ShadowsAs::Light)
+        add_light(light, called, terms);
+      else if (base_.shadows_as == ShadowsAs::Shade)
+        add_seen_light(LayerKind::Shadow, "shadow of " + name, light, terms);
+      else  // it darkens the surface as it is in the register, faded or not
+        add_seen_light(LayerKind::Shadow, "shadow of " + name, light, terms).fade = {};
+    }
+  }
+
+  void add_light(int light, const HeldTerms& called, const HeldTerms& terms) {
     const std::string name = "light of " + light_name(scene_, light);
-    Layer& first = add_seen_light(LayerKind::Light, name, light);
+    Layer& first = add_seen_light(LayerKind::Light, name, light, terms);
     first.gain = base_.gain;
     first.holds.specular = called.specular && !terms.specular;
     first.holds.second_texture = called.second_texture && !terms.second_texture;
-    first.factored = terms;
     if (!terms.second_texture) return;
-    Layer& second = add_seen_light(LayerKind::Light, name + ", texture 2", light);
+    Layer& second = add_seen_light(LayerKind::Light, name + ", texture 2", light, terms);
     second.gain = second_gain_;
     second.holds.second_texture = true;
-    second.factored = terms;
   }
 
-  Layer& add_seen_light(LayerKind kind, const std::string& name, int light) {
+  Layer& add_seen_light(LayerKind kind, const std::string& name, int light, const HeldTerms& terms) {
     Layer& layer = add(kind, name, spec_.shading.shadows);
     layer.light = light;
+    layer.factored = terms;
     layer.holds.shadows = true;
     layer.casters = base_.casters;
     return layer;

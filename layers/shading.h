@@ -10,6 +10,8 @@
 ///   texture     (N·L) T₂                                        + (over with alpha 0)
 ///   shadow      black with alpha (1 - s) β, one per light       over     (as shade)
 ///   light       v (N·L) T: where the light is seen, one each    +        (as light)
+///   shadows     s per channel, of all lights together           *        (as multiply)
+///   shadow      black with alpha 1 - s, one per light           atop     (as atop)
 ///   specular    highlights, dimmed where their light's v is     +
 ///   reflection  reflectivity × mirrored picture                 +
 ///
@@ -28,6 +30,11 @@
 /// one factor per light where light is a sum. Exact for one light, and ambient light of its hue, on a surface
 /// that does not glow; there it is one sprite of alpha alone. Where the author leaves it open that is where
 /// shade is chosen, and light everywhere else (`shadows_for`).
+///
+/// As *multiply*, s = (Σ v_l (D_l + S_l) + rest) / (the same without v) per channel, 1 where that is 0, times the
+/// base alone; as *atop*, the shade's alpha is not multiplied by cover and lies atop the base alone. Both need
+/// a compositor with a register, are never chosen by themselves, and do not go with factored textures (multiply),
+/// whose factors change without a render.
 ///
 /// Effects on demand: a term that nothing calls for makes no layer and is not held by any sprite.
 ///

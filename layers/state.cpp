@@ -66,6 +66,7 @@ void forget(LayerState& state) {
   state.screen_bounds_px = {};
   state.touches_display = state.clipped = false;
   state.nearest_w_m = 0;
+  state.motion_px = dvec2(0);
 }
 
 /// The morph weights of the parts, 16 to a matrix: they tell apart what matrices tell apart.
@@ -102,7 +103,7 @@ dmat4 clip_from_world(const CameraState& camera, ivec2 display_px) {
 bool LayerState::same_pixels(const LayerState& other) const {
   return layer == other.layer && camera == other.camera && view == other.view &&
          world_from_part == other.world_from_part && lights == other.lights &&
-         world_from_influence == other.world_from_influence;
+         world_from_influence == other.world_from_influence && motion_px == other.motion_px;
 }
 
 FrameCapture::FrameCapture(const SceneFrame& frame, const View& view)

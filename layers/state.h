@@ -82,6 +82,7 @@ struct LayerState {
   RectD screen_bounds_px;            ///< of the polyhedron clipped to the enlarged view; empty: out of view
   bool touches_display = false;      ///< screen_bounds_px overlaps the display itself
   bool clipped = false;              ///< part of the polyhedron is in the enlarged view, and part is not
+  dvec2 motion_px{0, 0};   ///< of layers with an open shutter: their mean motion on the display in a frame
   double nearest_w_m = 0;  ///< smallest w (depth along the view axis) of the clipped solid; 0: out of view
 
   dvec3 eye() const { return dvec3(camera.world_from_camera[3]); }
@@ -92,7 +93,7 @@ struct LayerState {
 
   bool in_view() const { return !screen_bounds_px.empty(); }
   /// True if the two states would be rendered to the same pixels: same layer, camera, view, part matrices,
-  /// influences and lights, compared exactly. The time is not compared. NaN is never the same.
+  /// influences, motion and lights, compared exactly. The time is not compared. NaN is never the same.
   bool same_pixels(const LayerState& other) const;
 };
 

@@ -143,6 +143,12 @@ void apply_order(const CommandLine& line, const Sequence& sequence, Settings& se
   settings.explicit_order = sequence.explicit_order;
   settings.cycles = chosen("--cycles", line.cycles, kCyclesWords, sequence.cycles);
   settings.compositor = chosen("--compositor", line.compositor, kCompositorWords, sequence.compositor);
+  if (settings.compositor == Compositor::Extended) return;
+  for (const layers::Layer& layer : sequence.layers.layers)
+    if (layer.shadows_as && layers::needs_registers(*layer.shadows_as))
+      throw InputError(sequence.file + ": layer '" + layer.name + "': shadows as " +
+                       (layer.shadows_as == layers::ShadowsAs::Multiply ? "multiply" : "atop") +
+                       ", rule: only with compositor extended");
 }
 
 /// How large, how dense and how shaded sprites are.

@@ -84,8 +84,13 @@ const Table<ShadowKeys>& shadow_keys() {
   using enum layers::ShadowsAs;
   static const Table<ShadowKeys> table =
       Table<ShadowKeys>("shadows")
-          .key("as", &ShadowKeys::as, choice<layers::ShadowsAs>({{"shade", Shade}, {"light", Light}}), "",
-               "black over the surface, or the light of each light that casts, added to the rest")
+          .key("as", &ShadowKeys::as,
+               choice<layers::ShadowsAs>(
+                   {{"shade", Shade}, {"light", Light}, {"multiply", Multiply}, {"atop", Atop}}),
+               "",
+               "black over the surface, or the light of each light that casts, added to the rest; with "
+               "`compositor: "
+               "extended` also the share of light that is left times the surface, or black atop the surface")
           .otherwise("`light` where more than one light reaches the layer, else `shade`")
           .include(&ShadowKeys::preferences, preference_keys());
   return table;

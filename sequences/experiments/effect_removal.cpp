@@ -253,7 +253,9 @@ void remove_shade_layers(Variant& variant, LayerKind kind, Term term) {
   std::size_t base = 0, geometry = 0;
   for (const Layer& layer : variant.sequence.layers.layers) {
     if (layer.kind == LayerKind::Geometry) base = geometry++;
-    if (layer.kind == kind) specs[base].shading.specular = specs[base].shading.textures = std::nullopt;
+    const bool is_light = kind == LayerKind::Shadow && layer.kind == LayerKind::Light;
+    if (layer.kind == kind || is_light)
+      specs[base].shading.specular = specs[base].shading.textures = std::nullopt;
   }
   factor_again(variant);
 }

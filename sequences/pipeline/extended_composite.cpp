@@ -73,7 +73,68 @@ Frame evaluate(const CompositeExpression& expression, std::span<const LayerSprit
   return pictures.empty() ? clear_frame(size) : std::move(pictures.back());
 }
 
+// --- Surfaces with their shadows in a register ---
+
+Frame white_frame(layers::ivec2 size) {
+  constexpr auto kFull = static_cast<std::uint16_t>(kOne);
+  Frame frame{size.x, size.y, {}};
+  frame.pixels.assign(static_cast<std::size_t>(size.x) * size.y, Linear16{kFull, kFull, kFull, kFull});
+  return frame;
+}
+
+/// R ← s * R
+void multiply(const Frame& left, Frame& picture) {
+  for (std::size_t i = 0; i < picture.pixels.size(); ++i) {
+    const Linear16& s = left.pixels[i];
+    Linear16& c = picture.pixels[i];
+    const auto channel = [](std::uint16_t v, std::uint16_t m) {
+      return static_cast<std::uint16_t>(scaled(v, m));
+    };
+    c = {channel(c.r, s.r), channel(c.g, s.g), channel(c.b, s.b), c.a};
+  }
+}
+
+/// The end of the sprites that lie on the surface `first`, itself included; `first` where none of them needs a
+/// register.
+std::size_t end_of_surface(std::span<const LayerSprite> sprites, std::size_t first) {
+  if (sprites[first].base >= 0) return first;
+  bool needs_register = false;
+  std::size_t end = first + 1;
+  for (; end < sprites.size() && sprites[end].base == sprites[first].layer; ++end)
+    needs_register = needs_register || sprites[end].use != Use::Over;
+  return needs_register ? end : first;
+}
+
+/// The picture of one surface over nothing.
+Frame put_together(std::span<const LayerSprite> sprites, layers::ivec2 size, CompositeCounters& counters) {
+  Frame picture = clear_frame(size);
+  for (const LayerSprite& sprite : sprites) {
+    if (sprite.use == Use::Over) {
+      counters += chunker::composite_onto(picture, {&sprite.placed, 1});
+      continue;
+    }
+    Frame read = sprite.use == Use::Multiply ? white_frame(size) : clear_frame(size);
+    counters += chunker::composite_onto(read, {&sprite.placed, 1});
+    if (sprite.use == Use::Multiply)
+      multiply(read, picture);
+    else
+      picture = combine(Operator::Atop, read, picture);
+  }
+  return picture;
+}
+
 }  // namespace
+
+Use use_of(const layers::Layer& layer) {
+  if (layer.kind != layers::LayerKind::Shadow) return Use::Over;
+  if (layer.shadows_as == layers::ShadowsAs::Multiply) return Use::Multiply;
+  return layer.shadows_as == layers::ShadowsAs::Atop ? Use::Atop : Use::Over;
+}
+
+bool any_registers(const LayerTable& layers) {
+  return std::any_of(layers.begin(), layers.end(),
+                     [](const layers::Layer& layer) { return use_of(layer) != Use::Over; });
+}
 
 Frame combine(Operator op, const Frame& left, const Frame& right) {
   TALISMAN_CHECK_EQ(left.width, right.width);
@@ -91,7 +152,16 @@ chunker::CompositeResult composite_extended(std::span<const LayerSprite> sprites
   while (next < sprites.size()) {
     const ResolvedCycle* cycle = order.resolved_with(sprites[next].layer);
     const std::size_t first = next;
-    while (next < sprites.size() && order.resolved_with(sprites[next].layer) == cycle) ++next;
+    if (const std::size_t end = end_of_surface(sprites, first); end > first) {
+      const Frame picture = put_together(sprites.subspan(first, end - first), display_px, result.counters);
+      result.frame = combine(Operator::Over, picture, result.frame);
+      next = end;
+      continue;
+    }
+    do {
+      ++next;
+    } while (next < sprites.size() && order.resolved_with(sprites[next].layer) == cycle &&
+             end_of_surface(sprites, next) == next);
     const std::span<const LayerSprite> run = sprites.subspan(first, next - first);
     if (cycle) {
       const Frame picture = evaluate(cycle->expression, run, display_px, result.counters);
@@ -99,7 +169,8 @@ chunker::CompositeResult composite_extended(std::span<const LayerSprite> sprites
       continue;
     }
     std::vector<chunker::PlacedSprite> placed;
-    for (const LayerSprite& sprite : run) placed.push_back(sprite.placed);
+    for (const LayerSprite& sprite : run)
+      if (sprite.use == Use::Over) placed.push_back(sprite.placed);  // else its surface is not shown
     result.counters += chunker::composite_onto(result.frame, placed);
   }
   return result;

@@ -36,6 +36,8 @@ struct ShownSprite {
   layers::ivec2 size_px{0, 0};
   int age_frames = 0;
   SpriteMultipliers multipliers;
+  /// Of a Light layer: how far its light falls beside its base (sequences/pipeline/light_beside.h), px.
+  std::optional<double> beside_base_px{};
 };
 
 struct FrameReport {

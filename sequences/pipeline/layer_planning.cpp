@@ -44,7 +44,7 @@ SpritePlacement place_layer(const Pipeline& pipeline, const LayerTable& layers, 
   extents.expected_reuse_frames = expected_reuse * layer.preferences.share_of_expected_motion;
   layers::PlacementOptions placement = pipeline.settings.placement;
   placement.resolution_scale *= own_resolution(layer) * resolution;
-  if (is_blurred(layer.preferences)) apply_motion_blur(pipeline, layers, now, placement);
+  if (is_blurred(layer.preferences)) apply_motion_blur(layers, now, placement);
   return layers::place_sprite(now, soon, layers.bound(layer.id).hull, extents, placement);
 }
 
@@ -181,6 +181,9 @@ const std::vector<LayerState>& captured_states(const Pipeline& pipeline, Pipelin
       capture->capture(layer, state.layers.bound(layer.id), layer_state);
   }
   if (!scene_frame) return captured.states;
+  if (any_shutter_open(state.layers))
+    capture_motion(pipeline, state.layers, scene_as_known(pipeline, state, other_frame(pipeline, frame)),
+                   frame, captured.states);
   layers::capture_influences(*scene_frame, state.layers.set(), captured.states);
   captured.shadow_maps = shadow_map_keys(pipeline.scene, state.layers.set(), *scene_frame);
   return captured.states;
@@ -239,7 +242,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
   else
     assessment.fitted = warp::fit(then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
   assessment.fiducials = fiducials::assess(then, now, placement, matched, assessment.fitted);
-  if (is_blurred(assessment.preferences)) judge_motion_blur(pipeline, layers, then, now, assessment);
+  if (is_blurred(assessment.preferences)) judge_motion_blur(layers, then, now, assessment);
   assess_light_and_faces(pipeline, layers.bound(now.layer), then, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =

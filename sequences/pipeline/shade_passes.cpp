@@ -10,6 +10,7 @@
 #include "chunker/mirror.h"
 #include "layers/animation.h"
 #include "layers/built_effects.h"
+#include "sequences/pipeline/shade_ratio.h"
 
 namespace talisman::sequences {
 
@@ -227,6 +228,51 @@ class LookedUp {
   ShadeInputs inputs_;
 };
 
+chunker::LinearImage draw_linear(const Drawing& drawing, const Contents& contents,
+                                 const SpritePlacement& placement) {
+  const LookedUp looked_up(drawing, contents, placement);
+  const Settings& settings = drawing.pipeline.settings;
+  return chunker::render_linear(drawing.prepared, drawing.frame, contents.parts, settings.view.display_px,
+                                placement, settings.render, looked_up.inputs());
+}
+
+void add(const chunker::LinearImage& more, chunker::LinearImage& sum) {
+  sum.counters += more.counters;
+  for (std::size_t i = 0; i < sum.texels.size(); ++i) {
+    chunker::LinearColor& c = sum.texels[i];
+    const chunker::LinearColor& d = more.texels[i];
+    c = {c.r + d.r, c.g + d.g, c.b + d.b, c.a};
+  }
+}
+
+/// What shadows leave of a surface, for the extended compositor: the ratio of two pictures.
+chunker::LinearImage draw_what_is_left(const Drawing& drawing, const Layer& layer,
+                                       const SpritePlacement& placement) {
+  using chunker::LightsHeld;
+  const ShadeTerm term = layer.factored.specular ? ShadeTerm::Base : ShadeTerm::Full;
+  Contents surface{layer.parts, term, -1, LightsHeld::All, false, {}, {}};
+  const chunker::LinearImage whole = draw_linear(drawing, surface, placement);
+  if (layer.shadows_as == layers::ShadowsAs::Atop)
+    return darkness_atop(
+        draw_linear(drawing, {layer.parts, ShadeTerm::Shadow, layer.light, LightsHeld::All, true, {}, {}},
+                    placement),
+        whole);
+  surface.lights = LightsHeld::Unmapped;
+  chunker::LinearImage seen = draw_linear(drawing, surface, placement);
+  surface.lights = LightsHeld::One;
+  surface.shadows = true;
+  for (const int light : lights_with_maps(drawing.pipeline.scene, -1)) {
+    surface.light = light;
+    add(draw_linear(drawing, surface, placement), seen);
+  }
+  return left_of_light(seen, whole);
+}
+
+bool is_ratio(const Layer& layer) {
+  return kShadows && layer.kind == LayerKind::Shadow && layer.shadows_as &&
+         needs_registers(*layer.shadows_as);
+}
+
 chunker::RenderResult draw(const Drawing& drawing, const Contents& contents,
                            const SpritePlacement& placement) {
   const LookedUp looked_up(drawing, contents, placement);
@@ -242,16 +288,19 @@ chunker::RenderResult draw(const Drawing& drawing, const Contents& contents,
 
 chunker::RenderResult draw_layer(const Drawing& drawing, const Layer& layer,
                                  const SpritePlacement& placement) {
+  if (is_ratio(layer)) {
+    const chunker::LinearImage image = draw_what_is_left(drawing, layer, placement);
+    return {chunker::encode_sprite(image), image.counters};
+  }
   return draw(drawing, contents_of(drawing.layers.set(), layer, drawing.frame.time_s), placement);
 }
 
 chunker::LinearImage draw_layer_linear(const Drawing& drawing, const Layer& layer,
-                                       const SpritePlacement& placement) {
-  const Settings& settings = drawing.pipeline.settings;
-  const Contents contents = contents_of(drawing.layers.set(), layer, drawing.frame.time_s);
-  const LookedUp looked_up(drawing, contents, placement);
-  return chunker::render_linear(drawing.prepared, drawing.frame, contents.parts, settings.view.display_px,
-                                placement, settings.render, looked_up.inputs());
+                                       const SpritePlacement& placement, std::optional<layers::vec2> blend) {
+  if (is_ratio(layer)) return draw_what_is_left(drawing, layer, placement);
+  Contents contents = contents_of(drawing.layers.set(), layer, drawing.frame.time_s);
+  if (blend) contents.blends = {{*blend, layer.parts}};
+  return draw_linear(drawing, contents, placement);
 }
 
 std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const Layer& layer,

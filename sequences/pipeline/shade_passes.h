@@ -14,6 +14,7 @@
 ///
 /// What a scene does not call for makes no pass and allocates nothing.
 
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,9 +39,11 @@ struct Drawing {
 chunker::RenderResult draw_layer(const Drawing& drawing, const layers::Layer& layer,
                                  const layers::SpritePlacement& placement);
 
-/// What draw_layer encodes, as it is before that.
+/// What draw_layer encodes, as it is before that. `blend`: factors of its two textures, in place of what its
+/// materials say.
 chunker::LinearImage draw_layer_linear(const Drawing& drawing, const layers::Layer& layer,
-                                       const layers::SpritePlacement& placement);
+                                       const layers::SpritePlacement& placement,
+                                       std::optional<layers::vec2> blend = std::nullopt);
 
 /// All terms that `layer` holds, one pass each (chunker/multipass.h).
 std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const layers::Layer& layer,

@@ -12,6 +12,7 @@
 #include "sequences/pipeline/draw_instant.h"
 #include "sequences/pipeline/extended_composite.h"
 #include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/light_beside.h"
 #include "sequences/pipeline/shade_passes.h"
 #include "sequences/pipeline/stopwatch.h"
 
@@ -119,6 +120,10 @@ std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineS
       multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
                      memory.placement.size_px, report.frame - memory.frame_rendered, multipliers});
+    if (report.layers[layer].kind == layers::LayerKind::Light)
+      shown.back().beside_base_px =
+          light_beside_px(state, report, report.layers[layer],
+                          state.captured.at(report.frame).states[report.layers[layer].base]);
   }
   return shown;
 }
@@ -172,10 +177,11 @@ chunker::PlacedSprite placed_of(const ShownSprite& sprite, const chunker::Sprite
 chunker::CompositeResult composite_shown(const Pipeline& pipeline, const FrameReport& report,
                                          const chunker::SpriteStore& sprites) {
   const layers::ivec2 display_px = pipeline.settings.view.display_px;
-  if (!report.order.resolved.empty()) {
+  if (!report.order.resolved.empty() || any_registers(report.layers)) {
     std::vector<LayerSprite> placed;
     for (const ShownSprite& sprite : report.shown)
-      placed.push_back({sprite.layer, placed_of(sprite, sprites)});
+      placed.push_back({sprite.layer, placed_of(sprite, sprites), report.layers[sprite.layer].base,
+                        use_of(report.layers[sprite.layer])});
     return composite_extended(placed, report.order, display_px, pipeline.scene.background);
   }
   std::vector<chunker::PlacedSprite> placed;

@@ -161,6 +161,14 @@ FrameColumns frame_budget_gap() {
               [](auto& l) -> auto& { return l.budget_gap->exact; })};
 }
 
+FrameColumns light_layers() {
+  return {stored<FrameLine>(
+      "light_beside_px", "light_layers/beside_px", "px",
+      "how far the light of a light layer falls beside its surface: the largest of all; at most "
+      "the sum of the geometric errors of both",
+      [](auto& l) -> auto& { return *l.light_beside_px; })};
+}
+
 /// One comparison of pictures. `Which` returns a Quality by reference.
 template <typename Which>
 FrameColumns quality(const std::string& which, const std::string& what, Which) {
@@ -198,6 +206,9 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
       {"visibility", "where layers were sorted; null: the groups alone gave the order", true,
        [](const FrameLine& l) { return l.visibility.has_value(); },
        [](FrameLine& l) { l.visibility.emplace(); }},
+      {"light_layers", "where layers hold the light of single lights", false,
+       [](const FrameLine& l) { return l.light_beside_px.has_value(); },
+       [](FrameLine& l) { l.light_beside_px = 0; }},
       {"budget_gap", "with --budget-gap", false, [](const FrameLine& l) { return l.budget_gap.has_value(); },
        [](FrameLine& l) { l.budget_gap.emplace(); }},
       {"quality", "with --quality", false, [](const FrameLine& l) { return l.quality.has_value(); },
@@ -212,7 +223,7 @@ const ColumnTable<FrameLine>& frame_table() {
     for (const FrameColumns& part :
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
-          frame_budget_gap(),
+          light_layers(), frame_budget_gap(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/frame_lines.h"
 
+#include <algorithm>
 #include <cstdio>
 
 #include "regulator/profile.h"
@@ -72,6 +73,9 @@ FrameLine line_of(const FrameReport& report) {
     line.visibility = {report.order.counters, report.order.merged_parts, report.order.resolved_counters()};
     line.times.sort_ms = report.order.sort_ms;
   }
+  for (const ShownSprite& shown : report.shown)
+    if (shown.beside_base_px)
+      line.light_beside_px = std::max(line.light_beside_px.value_or(0), *shown.beside_base_px);
   line.budget_gap = report.budget_gap;
   if (!report.picture.pixels.empty()) add_drawing(line, report);
   return line;

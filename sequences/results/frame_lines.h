@@ -74,8 +74,9 @@ struct FrameLine {
   PixelCounts pixels;
   ChunkCounts chunks;
   std::int64_t fragments = 0, texture_samples = 0;
-  std::int64_t sprite_bytes = 0;  ///< of the sprites that the frame shows
-  double modelled_ms = 0;         ///< by the profile talisman-1996
+  std::int64_t sprite_bytes = 0;          ///< of the sprites that the frame shows
+  double modelled_ms = 0;                 ///< by the profile talisman-1996
+  std::optional<double> light_beside_px;  ///< the largest of all Light layers; empty: there is none
   std::optional<CompressionReport> compression;
   std::optional<VisibilityLine> visibility;  ///< empty: the groups alone gave the order
   std::optional<FrameQuality> quality;

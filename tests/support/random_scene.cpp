@@ -100,20 +100,30 @@ std::string surface(Lots& lots) {
   return text;
 }
 
-std::string preferences(Lots& lots) {
-  std::string text = "{";
-  if (lots.one_in(3)) text += "resolution_scale: 0.5";
-  if (lots.one_in(6)) text += std::string(text.size() > 1 ? ", " : "") + "min_update_rate: 0.3";
-  return text + "}";
+std::string joined(const std::string& a, const std::string& b) {
+  return a + (a.empty() || b.empty() ? "" : ", ") + b;
 }
 
-std::string shading(Lots& lots, bool two_textures) {
+std::string preferences(Lots& lots) {
+  const std::string resolution = lots.one_in(3) ? "resolution_scale: 0.5" : "";
+  return joined(resolution, lots.one_in(6) ? "min_update_rate: 0.3" : "");
+}
+
+/// How shadows are factored: any way that the compositor has, or as the tool likes.
+std::string as(Lots& lots, bool extended, bool two_textures) {
+  static const char* const kWays[] = {"", "as: shade", "as: light", "as: atop", "as: multiply"};
+  return kWays[lots.whole(0, !extended ? 2 : two_textures ? 3 : 4)];
+}
+
+std::string shading(Lots& lots, bool extended, bool two_textures) {
   std::string text;
   const auto add = [&](const std::string& term) { text += (text.empty() ? "" : ", ") + term; };
-  for (const char* term : {"shadows", "specular", "reflection"})
-    if (lots.one_in(2)) add(term + (": " + preferences(lots)));
+  const std::string way = as(lots, extended, two_textures);
+  if (lots.one_in(1.5)) add("shadows: {" + joined(way, preferences(lots)) + "}");
+  for (const char* term : {"specular", "reflection"})
+    if (lots.one_in(2)) add(term + (": {" + preferences(lots) + "}"));
   if (two_textures && lots.one_in(2)) {
-    add("textures: " + preferences(lots));
+    add("textures: {" + preferences(lots) + "}");
     if (lots.one_in(2)) add("first_blend: [{t: 0, value: 1}, {t: 0.3, value: 0.4}]");
     if (lots.one_in(2)) add("second_blend: [{t: 0.1, value: 0.2}, {t: 0.4, value: 0.9}]");
   }
@@ -126,6 +136,7 @@ std::string fade(Lots& lots) {
 }
 
 struct Written {
+  bool extended = false;  ///< the compositor has more than `over`
   std::string shapes, lights, layers;
 };
 
@@ -139,8 +150,8 @@ void write_floor(Lots& lots, Written& text) {
                  (lots.one_in(4) ? ", specular: [0.4, 0.4, 0.4], shininess: 30" : "") +
                  (lots.one_in(5) ? ", spin: {deg_per_s: 20}" : "") + "}\n";
   text.layers += "  - {name: floor, parts: [floor]" +
-                 std::string(lots.one_in(4) ? "" : ", group: background") + shading(lots, two_textures) +
-                 fade(lots) + "}\n";
+                 std::string(lots.one_in(4) ? "" : ", group: background") +
+                 shading(lots, text.extended, two_textures) + fade(lots) + "}\n";
 }
 
 void write_body(Lots& lots, int number, Place place, Written& text) {
@@ -158,11 +169,11 @@ void write_body(Lots& lots, int number, Place place, Written& text) {
   }
   std::string wishes;
   if (has_arm && lots.one_in(2)) wishes = "bound_each_part: true";
-  if (lots.one_in(6)) wishes += std::string(wishes.empty() ? "" : ", ") + "motion_blur: 0.5";
-  if (lots.one_in(6)) wishes += std::string(wishes.empty() ? "" : ", ") + "resolution_scale: 0.5";
+  if (lots.one_in(6)) wishes = joined(wishes, "motion_blur: 0.5");
+  if (lots.one_in(6)) wishes = joined(wishes, "resolution_scale: 0.5");
   text.layers += "  - {name: " + id + ", parts: [" + parts + "]" +
-                 (lots.one_in(6) ? ", group: foreground" : "") + shading(lots, false) + fade(lots) +
-                 (wishes.empty() ? "" : ", preferences: {" + wishes + "}") +
+                 (lots.one_in(6) ? ", group: foreground" : "") + shading(lots, text.extended, false) +
+                 fade(lots) + (wishes.empty() ? "" : ", preferences: {" + wishes + "}") +
                  (lots.one_in(8) ? ", casts_shadows: false" : "") + "}\n";
 }
 
@@ -217,6 +228,7 @@ constexpr const char* kPicture =
 std::string random_sequence_text(std::uint32_t seed) {
   Lots lots(seed);
   Written text;
+  text.extended = lots.one_in(4);
   write_floor(lots, text);
   write_bodies(lots, text);
   if (!lots.one_in(4)) text.lights += "  - {kind: ambient, color: " + color(lots, 0.05, 0.3) + "}\n";
@@ -225,7 +237,7 @@ std::string random_sequence_text(std::uint32_t seed) {
   std::string head = "name: random_" + std::to_string(seed) + "\nframes: " + std::to_string(kFrames) +
                      "\nfps: 24\ndisplay: [96, 72]\nbackground: " + color(lots, 0, 0.6) + "\n" + camera(lots);
   if (lots.one_in(4)) head += "cycles: keep\n";
-  if (lots.one_in(4)) head += "compositor: extended\n";
+  if (text.extended) head += "compositor: extended\n";
   if (lots.one_in(8)) head += "compression: {quality: 85}\n";
   return head + "shapes:\n" + text.shapes + "lights:\n" + text.lights + "layers:\n" + text.layers;
 }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "layers/check.h"
@@ -18,6 +19,7 @@ namespace {
 
 using layers::dvec3;
 using layers::Layer;
+using layers::ShadowsAs;
 
 // --- Layers of one frame ---
 
@@ -88,10 +90,10 @@ class LayerPainter {
     const auto base = two ? chunker::BasePasses::Two : chunker::BasePasses::One;
     const layers::vec2 gains =
         two ? layers::vec2(group[0].multipliers.color.x, group[1].multipliers.color.x) : layers::vec2(1);
-    const auto terms =
-        draw_terms({whole_, whole_.authored, whole_maps_, prepared_, now_}, whole, placement, base);
-    picture.surface = chunker::surface_of(terms, gains);
-    picture.unfactored = chunker::blend_terms(terms, gains);
+    const Drawing drawing{whole_, whole_.authored, whole_maps_, prepared_, now_};
+    picture.surface = chunker::surface_of(draw_terms(drawing, whole, placement, base), gains);
+    picture.unfactored =
+        draw_layer_linear(drawing, whole, placement, two ? std::optional(gains) : std::nullopt);
   }
 
   const Pipeline& flush_;
@@ -134,7 +136,7 @@ RegulatorSetting own_policy(const Variant& variant) {
 class Experiment {
  public:
   Experiment(const Variant& given, const ExperimentFrames& frames)
-      : variant_(over_alone(given)),
+      : variant_(with_shadows_as(given, std::nullopt)),
         whole_(unfactored(variant_)),
         frames_(frames),
         prepared_(*given.sequence.scene),
@@ -142,6 +144,10 @@ class Experiment {
         coarse_(texel_on_pixel(variant_, ShadeResolution::Own)),
         placed_(without_reuse(variant_)),
         one_pass_(texel_on_pixel(whole_, ShadeResolution::Full)),
+        as_shade_(texel_on_pixel(with_shadows_as(given, ShadowsAs::Shade), ShadeResolution::Full)),
+        as_light_(texel_on_pixel(with_shadows_as(given, ShadowsAs::Light), ShadeResolution::Full)),
+        as_multiply_(texel_on_pixel(with_shadows_as(given, ShadowsAs::Multiply), ShadeResolution::Full)),
+        as_atop_(texel_on_pixel(with_shadows_as(given, ShadowsAs::Atop), ShadeResolution::Full)),
         factored_(variant_.sequence, variant_.settings, own_policy(variant_)),
         unfactored_(whole_.sequence, whole_.settings, own_policy(whole_)) {
     result_.blends_over_time = blends_over_time(given.sequence);
@@ -172,11 +178,6 @@ class Experiment {
   }
 
  private:
-  static Variant over_alone(Variant variant) {
-    variant.settings.compositor = Compositor::Talisman;
-    return variant;
-  }
-
   void compare_frame(int frame) {
     PipelineState state(flush_.pipeline);
     const FrameReport report = step(flush_.pipeline, state, frame, &prepared_);
@@ -189,6 +190,10 @@ class Experiment {
     lose(Picture::Placement, frame, placed_.draw(frame, prepared_), truth);
     judge(Picture::Reuse, frame, factored_, truth);
     const Image8 own = result_.blends_over_time ? constant_truth(state, report) : truth;
+    lose(Picture::AsShade, frame, as_shade_.draw(frame, prepared_), truth);
+    lose(Picture::AsLight, frame, as_light_.draw(frame, prepared_), truth);
+    lose(Picture::AsMultiply, frame, as_multiply_.draw(frame, prepared_), own);
+    lose(Picture::AsAtop, frame, as_atop_.draw(frame, prepared_), truth);
     lose(Picture::OnePass, frame, one_pass_.draw(frame, prepared_), own);
     judge(Picture::UnfactoredReuse, frame, unfactored_, own);
     keep_worst(frame, prediction, report.picture);
@@ -264,7 +269,7 @@ class Experiment {
   Variant variant_, whole_;
   ExperimentFrames frames_;
   chunker::PreparedScene prepared_;
-  FreshVariant flush_, coarse_, placed_, one_pass_;
+  FreshVariant flush_, coarse_, placed_, one_pass_, as_shade_, as_light_, as_multiply_, as_atop_;
   SettingRun factored_, unfactored_;
   FactoringResult result_;
   double worst_squares_ = 0;

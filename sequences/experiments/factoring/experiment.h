@@ -4,8 +4,8 @@
 /// What does it cost that the compositor has only `over`, what do coarse shade layers cost, and what old
 /// ones? And what does factoring save?
 ///
-/// The truth of a frame is unfactored: the terms of every layer that has shade layers are drawn in passes of
-/// their own and multiplied and added before anything is rounded (chunker/multipass.h), texel on pixel; all
+/// The truth of a frame is unfactored: every layer that has shade layers is drawn by the definition, ambient +
+/// emission + Σ v (D + S) + reflection per channel, in one pass that nothing is rounded in, texel on pixel; all
 /// layers are composited in exact arithmetic in the order of `reference`. Layers that factor nothing, and
 /// those that are merged in a cycle (they are drawn in one pass), are their own truth. Against it, frame by
 /// frame, each with one thing more:
@@ -16,10 +16,12 @@
 ///                       compressed, coarser where their authors say so
 ///   + reuse             the sequence's own policy
 ///
-/// and, for comparison, the same layers unfactored in one pass of the renderer, fresh and under the
-/// sequence's policy. One pass gives each of a texel's 16 samples its own shadow, several passes multiply
-/// means: where a texel is mixed they differ, and neither is wrong. All of it with the compositor that has
-/// `over` alone, whatever the sequence says.
+/// and, for comparison, every way of factoring shadows (layers/shading.h) as `over alone` is drawn: as shade, light,
+/// multiply and atop, the last two with the extended compositor (multiply, which does not go with factored
+/// textures, with those in their surface: judged by the truth that blends them so); and the same layers
+/// unfactored in one pass of the renderer, fresh and under the sequence's policy. All else with the compositor that
+/// has `over` alone, whatever the sequence says. One pass gives each of a texel's 16 samples its own shadow,
+/// shade multiplies means: where a texel is mixed that is a part of its error.
 ///
 /// The loss of `over alone` is predicted (prediction.h), of the frame and of each layer as if it alone
 /// were factored, and compared with what the compositor made.

@@ -66,6 +66,14 @@ const char* name(Picture picture) {
       return "+ placement";
     case Picture::Reuse:
       return "+ reuse";
+    case Picture::AsShade:
+      return "shadows as shade";
+    case Picture::AsLight:
+      return "shadows as light";
+    case Picture::AsMultiply:
+      return "shadows as multiply";
+    case Picture::AsAtop:
+      return "shadows as atop";
     case Picture::OnePass:
       return "unfactored, one pass";
     case Picture::UnfactoredReuse:

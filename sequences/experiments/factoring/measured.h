@@ -57,10 +57,22 @@ using ErrorCells = std::map<std::pair<int, int>, std::int64_t>;
 inline constexpr int kCellsOfWhite = 8192;
 
 /// What is compared with the truth, in this order.
-enum class Picture { OverAlone, ShadeResolution, Placement, Reuse, OnePass, UnfactoredReuse };
-inline constexpr std::array kPictures = {Picture::OverAlone, Picture::ShadeResolution,
-                                         Picture::Placement, Picture::Reuse,
-                                         Picture::OnePass,   Picture::UnfactoredReuse};
+enum class Picture {
+  OverAlone,
+  ShadeResolution,
+  Placement,
+  Reuse,
+  AsShade,
+  AsLight,
+  AsMultiply,
+  AsAtop,
+  OnePass,
+  UnfactoredReuse
+};
+inline constexpr std::array kPictures = {
+    Picture::OverAlone, Picture::ShadeResolution, Picture::Placement,  Picture::Reuse,
+    Picture::AsShade,   Picture::AsLight,         Picture::AsMultiply, Picture::AsAtop,
+    Picture::OnePass,   Picture::UnfactoredReuse};
 const char* name(Picture picture);
 
 /// Against the truth, by sampled frame.

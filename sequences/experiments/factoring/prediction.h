@@ -4,7 +4,7 @@
 /// By how much does a frame of factored layers differ from the unfactored one, and how much of that is
 /// rounding? All sprites texel on pixel, drawn for this frame.
 ///
-/// A layer's unfactored picture is [U, β] (chunker/multipass.h). Back to front, with m the fade of the layer,
+/// A layer's unfactored picture is [U, β], in one pass by the definition (chunker/shade.h). Back to front, with m the fade of the layer,
 /// T the true frame so far and E the error of the factored frame so far, per pixel and channel in linear
 /// light:
 ///
@@ -15,9 +15,11 @@
 /// paper's β (1 - β)(1 - s)(B - T) [LS97 appendix], T being what really lies behind; the first says that what
 /// covers an error in front hides it in proportion, and that a shadow darkens it too. `rest` is what the
 /// formula does not know: a term that the author left in the base under a factored shadow is darkened with
-/// it, which dims a highlight by s where the light's visibility should, and 8 bits hold no more than 1 in
-/// each sprite. It is what exact arithmetic gives on the same sprites beyond the formula, and zero to 1e-6
-/// for layers that factor all of their terms.
+/// it, which dims a highlight by s where the light's visibility should; several shadows multiply where lights
+/// add; a shadow is one number for three channels, and for all samples of a texel; and 8 bits hold no more
+/// than 1 in each sprite. It is what exact arithmetic gives on the same sprites beyond the formula: zero to 1e-6
+/// for shadows as light, and, with one light and ambient light of its hue, for layers that factor all of their
+/// terms, where no texel is mixed.
 ///
 /// Rounding bound D of |frame - (T + E)|, from half steps alone:
 ///

@@ -66,6 +66,21 @@ Variant without_reuse(const Variant& variant) {
   return fresh;
 }
 
+Variant with_shadows_as(const Variant& variant, std::optional<layers::ShadowsAs> as) {
+  Variant changed = variant;
+  for (layers::LayerSpec& spec : changed.sequence.layer_specs) {
+    std::optional<layers::ShadowsAs>& own = spec.shading.shadows_as;
+    if (as)
+      own = as;
+    else if (own && needs_registers(*own))
+      own.reset();
+    if (as == layers::ShadowsAs::Multiply) spec.shading.textures.reset();
+  }
+  changed.sequence.layers = layers::factor(*changed.sequence.scene, changed.sequence.layer_specs);
+  changed.settings.compositor = as && needs_registers(*as) ? Compositor::Extended : Compositor::Talisman;
+  return changed;
+}
+
 Variant texel_on_pixel(const Variant& variant, ShadeResolution shades) {
   Variant flush = without_reuse(variant);
   for (layers::LayerSpec& spec : flush.sequence.layer_specs) make_full(spec, shades);
@@ -75,7 +90,6 @@ Variant texel_on_pixel(const Variant& variant, ShadeResolution shades) {
   settings.placement.resolution_scale = 1;
   settings.placement.max_sprite_px = chunker::kMaxSpriteSide;
   settings.compression.reset();
-  settings.compositor = Compositor::Talisman;
   return flush;
 }
 

@@ -4,6 +4,8 @@
 /// Sequences that differ only in how their shading is factored, and how they are drawn so that nothing else
 /// differs: what the factoring experiment compares.
 
+#include <optional>
+
 #include "sequences/experiments/variant.h"
 
 namespace talisman::sequences {
@@ -17,6 +19,11 @@ Variant unfactored(const Variant& variant);
 
 /// Does the compositor blend the textures of some layer otherwise than its material says, at some time?
 bool blends_over_time(const Sequence& sequence);
+
+/// All factored shadows as `as`. Multiply and Atop: with the extended compositor, and without factored textures in
+/// the first case; else with `over` alone. Empty: as the sequence says, but what needs more than `over` as suits the
+/// lights.
+Variant with_shadows_as(const Variant& variant, std::optional<layers::ShadowsAs> as);
 
 enum class ShadeResolution { Full, Own };
 
