@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSameHue = 1e-4;  ///< sine of the angle between two colours: far below a step of 8 bits
 
-bool is_black(const vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+bool gives_nothing(const vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 bool same_hue(const vec3& a, const vec3& b) {
   return glm::length(glm::cross(dvec3(a), dvec3(b))) <=
@@ -97,7 +97,7 @@ bool is_near_enough(const LightState& light, const Target& target) {
 
 bool reaches(const Scene& scene, const Layer& layer, int index) {
   const Light& light = scene.lights[index];
-  if (is_black(light.color)) return false;
+  if (gives_nothing(light.color)) return false;
   if (light.kind == Light::Kind::Ambient) return true;
   const Targets targets(scene, layer);
   const double motion = motion_s(scene);
@@ -113,7 +113,7 @@ bool reaches(const Scene& scene, const Layer& layer, int index) {
 ShadowsAs shadows_for(const Scene& scene, const Layer& layer) {
   for (const int part : layer.parts) {
     const Material& material = material_of_part(scene, part);
-    if (!material.unlit && !is_black(material.emissive)) return ShadowsAs::Light;
+    if (!material.unlit && !gives_nothing(material.emissive)) return ShadowsAs::Light;
   }
   vec3 ambient(0), source(0);
   int sources = 0;

@@ -171,7 +171,8 @@ class Factoring {
   Factoring(const Scene& scene, const LayerSpec& spec, Layer& base)
       : scene_(scene), spec_(spec), base_(base) {
     const HeldTerms called = base.holds, terms = terms_to_factor(spec.shading, called);
-    if (terms.shadows) base.shadows_as = spec.shading.shadows_as.value_or(shadows_for(scene, base));
+    const std::optional<ShadowsAs>& asked = spec.shading.shadows_as;
+    if (terms.shadows) base.shadows_as = asked ? *asked : shadows_for(scene, base);
     if (terms.second_texture) add_second_texture();
     if (terms.shadows) add_shadows(called, terms);
     if (terms.specular) {

@@ -75,16 +75,16 @@ Format<layers::Keys<double>> multiplier() {
   return {either_type({constant.type, varying.type}), read};
 }
 
-struct ShadowKeys {
+struct FactoredShadowKeys {
   LayerPreferences preferences;
   std::optional<layers::ShadowsAs> as;
 };
 
-const Table<ShadowKeys>& shadow_keys() {
+const Table<FactoredShadowKeys>& factored_shadow_keys() {
   using enum layers::ShadowsAs;
-  static const Table<ShadowKeys> table =
-      Table<ShadowKeys>("shadows")
-          .key("as", &ShadowKeys::as,
+  static const Table<FactoredShadowKeys> table =
+      Table<FactoredShadowKeys>("shadows")
+          .key("as", &FactoredShadowKeys::as,
                choice<layers::ShadowsAs>(
                    {{"shade", Shade}, {"light", Light}, {"multiply", Multiply}, {"atop", Atop}}),
                "",
@@ -92,7 +92,7 @@ const Table<ShadowKeys>& shadow_keys() {
                "`compositor: "
                "extended` also the share of light that is left times the surface, or black atop the surface")
           .otherwise("`light` where more than one light reaches the layer, else `shade`")
-          .include(&ShadowKeys::preferences, preference_keys());
+          .include(&FactoredShadowKeys::preferences, preference_keys());
   return table;
 }
 
@@ -102,9 +102,9 @@ const Table<ShadingSpec>& shading_keys() {
   static const Table<S> table =
       Table<S>("shading")
           .custom(
-              "shadows", map_type(shadow_keys().keys()),
+              "shadows", map_type(factored_shadow_keys().keys()),
               [](const YamlValue& value, S& shading) {
-                const ShadowKeys keys = shadow_keys().read(value);
+                const FactoredShadowKeys keys = factored_shadow_keys().read(value);
                 shading.shadows = keys.preferences;
                 shading.shadows_as = keys.as;
               },

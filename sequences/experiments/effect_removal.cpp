@@ -204,7 +204,8 @@ std::vector<layers::ExplicitPair> renamed(const std::vector<layers::ExplicitPair
   return result;
 }
 
-/// The layers again, after scene or specs have changed.
+}  // namespace
+
 void factor_again(Variant& variant) {
   Sequence& sequence = variant.sequence;
   layers::LayerSet factored = layers::factor(*sequence.scene, sequence.layer_specs);
@@ -212,6 +213,8 @@ void factor_again(Variant& variant) {
     *pairs = renamed(*pairs, sequence.layers.layers, factored.layers);
   sequence.layers = std::move(factored);
 }
+
+namespace {
 
 void change_scene(Variant& variant, void (*change)(Scene&)) {
   Scene scene = *variant.sequence.scene;

@@ -40,4 +40,7 @@ namespace talisman::sequences {
 /// Cost: a copy of the scene where the scene is changed, and the factoring of its layers.
 Variant without_effect(const Variant& given, layers::Effect effect);
 
+/// The layers again, after scene or specs have changed; pairs of the author's order stay those of the same names.
+void factor_again(Variant& variant);
+
 }  // namespace talisman::sequences

@@ -12,6 +12,8 @@ double light_beside_px(const PipelineState& state, const FrameReport& report, co
   const LayerMemory& light = state.memory[layer.id];
   const regulator::LayerDecision& of_base = report.plan.decisions[layer.base];
   const regulator::LayerDecision& of_light = report.plan.decisions[layer.id];
+  const double bound = of_base.shown_geometric_px + of_light.shown_geometric_px;
+  if (!base.then || !light.then) return bound;
   const bool alike = base.depicts_frame == light.depicts_frame &&
                      of_base.shown_warp.now_from_then == of_light.shown_warp.now_from_then;
   if (alike) return 0;
@@ -27,7 +29,6 @@ double light_beside_px(const PipelineState& state, const FrameReport& report, co
     if (there == base_px.end()) continue;
     farthest = std::max(farthest, glm::distance(there->second, of_light.shown_warp(from_light.then_px[i])));
   }
-  const double bound = of_base.shown_geometric_px + of_light.shown_geometric_px;
   return farthest >= 0 ? std::min(farthest, bound) : bound;
 }
 

@@ -12,7 +12,10 @@ namespace {
 using chunker::LinearColor;
 using chunker::LinearImage;
 
-float ratio(float part, float whole) { return whole > 0 ? std::clamp(part / whole, 0.0f, 1.0f) : 1.0f; }
+/// Of what the sprites of both would hold: no more than 1.
+float ratio(float part, float whole) {
+  return whole > 0 ? std::clamp(std::min(part, 1.0f) / std::min(whole, 1.0f), 0.0f, 1.0f) : 1.0f;
+}
 
 /// Texels that are not covered take the mean of their covered neighbours; `otherwise` without any.
 void carry_beside(const std::vector<bool>& covered, const LinearColor& otherwise, LinearImage& image) {

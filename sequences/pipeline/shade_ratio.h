@@ -4,9 +4,10 @@
 /// What do shadows leave of a surface, apart from the surface? The sprites that the extended compositor
 /// multiplies with, and those that it lays atop.
 ///
-///   multiply   [C_v / C_1, 1]         per channel; C_v: the surface with shadows, C_1: the same without; 1 where
-///                                     C_1 is 0. Kept as colour, the square root in eight bits: as alpha, which is
-///                                     linear, deep shadows would be up to six code values off.
+///   multiply   [C_v / C_1, 1]         per channel; C_v: the surface with shadows, C_1: the same without, each cut
+///                                     off at 1 as its sprite is; 1 where C_1 is 0. Kept as colour, the square
+///                                     root in eight bits: as alpha, which is linear, deep shadows would be up
+///                                     to six code values off.
 ///   atop       [0, A / β]             A = (1 - s) β: the shade's alpha, β: the surface's, each the mean over all
 ///                                     samples of a texel: so their ratio is the mean over the covered ones
 ///

@@ -15,7 +15,9 @@ using layers::LayerPreferences;
 
 /// What the compositor is told of one of the layer's two textures differs from what the materials say.
 bool is_blended_otherwise(const layers::Scene& scene, const Layer& layer) {
-  const bool second = layer.kind == layers::LayerKind::Texture;
+  const bool is_second_light =
+      layer.kind == layers::LayerKind::Light && layer.factored.second_texture && layer.holds.second_texture;
+  const bool second = layer.kind == layers::LayerKind::Texture || is_second_light;
   const auto differs = [&](int part) {
     const int material = scene.parts[part].material;
     if (material < 0 || scene.materials[material].texture2 < 0) return false;
@@ -76,7 +78,7 @@ Variant with_shadows_as(const Variant& variant, std::optional<layers::ShadowsAs>
       own.reset();
     if (as == layers::ShadowsAs::Multiply) spec.shading.textures.reset();
   }
-  changed.sequence.layers = layers::factor(*changed.sequence.scene, changed.sequence.layer_specs);
+  factor_again(changed);
   changed.settings.compositor = as && needs_registers(*as) ? Compositor::Extended : Compositor::Talisman;
   return changed;
 }

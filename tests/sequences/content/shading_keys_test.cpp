@@ -44,7 +44,7 @@ const std::vector<std::string> kShadedLines = {
     /*12*/ "    casts_shadows: false",
     /*13*/ "    fade: [{t: 0, value: 1}, {t: 0.5, value: 0.25}]",
     /*14*/ "    shading:",
-    /*15*/ "      shadows: {resolution_scale: 0.5, max_update_rate: 0.75}",
+    /*15*/ "      shadows: {as: shade, resolution_scale: 0.5, max_update_rate: 0.75}",
     /*16*/ "      specular: {motion_blur: 0.25}",
     /*17*/ "      reflection: {min_update_rate: 0.125}",
     /*18*/ "      textures: {importance: {photometric: 0}}",
@@ -93,6 +93,25 @@ TEST(LoadShading, EveryTermIsALayerWithItsOwnPreferences) {
   EXPECT_EQ(texture.preferences.importance.photometric, 0);
   EXPECT_EQ(texture.preferences.importance.geometric, 1);
   EXPECT_EQ(s.layers.layers.size(), 6u);
+}
+
+// Both textures are lit by the lamp, and each has a multiplier of its own.
+TEST(LoadShading, ShadowsAsLightAreALayerForEachTexture) {
+  const TemporaryFolder folder;
+  std::vector<std::string> lines = kShadedLines;
+  lines[14] = "      shadows: {as: light, resolution_scale: 0.5}";
+  const Sequence s = load_shaded(folder, lines);
+  EXPECT_EQ(layer_of(s, "floor").shadows_as, layers::ShadowsAs::Light);
+  const Layer &first = layer_of(s, "floor/light of lamp"),
+              &second = layer_of(s, "floor/light of lamp, texture 2");
+  EXPECT_EQ(first.kind, LayerKind::Light);
+  EXPECT_EQ(first.preferences.resolution_scale, 0.5);
+  EXPECT_EQ(first.gain.values, (std::vector{0.4}));
+  EXPECT_EQ(second.gain.values, (std::vector{0.3, 0.7}));
+  EXPECT_EQ(first.fade.values, (std::vector{1, 0.25})) << "a fade takes the light with it";
+  lines[14] = "      shadows: {}";
+  EXPECT_EQ(layer_of(load_shaded(folder, lines), "floor").shadows_as, layers::ShadowsAs::Light)
+      << "two lights reach the floor";
 }
 
 TEST(LoadShading, TermThatIsNotNamedStaysInTheSprite) {

@@ -8,7 +8,10 @@
 #include "sequences/pipeline/motion_blur.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/results/summary.h"
+#include "tests/sequences/playback.h"
+#include "tests/sequences/temporary_folder.h"
 #include "tests/support/scenes.h"
+#include "tests/support/sequences.h"
 
 namespace talisman::sequences {
 namespace {
@@ -115,8 +118,7 @@ TEST(MotionBlur, FasterLayersAreSampledLessDenselyAndNeverBelowASixteenth) {
   PipelineState state(a);
   bool some_blur = false;
   for (const layers::LayerState& now : captured_states(a, state, 3)) {
-    const MotionSampling little = motion_sampling(a, a.authored, now),
-                         much = motion_sampling(b, b.authored, now);
+    const MotionSampling little = motion_sampling(a.authored, now), much = motion_sampling(b.authored, now);
     EXPECT_LE(much.density, little.density);
     EXPECT_GE(much.density, 1.0 / 16);
     some_blur = some_blur || much.density < 0.5;
@@ -131,7 +133,7 @@ TEST(MotionBlur, AtRestThereIsNone) {
   Settings settings;
   const Pipeline pipeline = make_pipeline(scene, set, settings);
   PipelineState state(pipeline);
-  EXPECT_EQ(motion_sampling(pipeline, state.layers, captured_states(pipeline, state, 0)[0]).density, 1);
+  EXPECT_EQ(motion_sampling(state.layers, captured_states(pipeline, state, 0)[0]).density, 1);
 }
 
 TEST(MotionBlur, BlurThatIsNotThatOfNowCountsAsSampling) {
@@ -145,20 +147,62 @@ TEST(MotionBlur, BlurThatIsNotThatOfNowCountsAsSampling) {
     for (int frame = 0; frame < 8; ++frame) {
       const layers::LayerState& then = captured_states(pipeline, state, frame)[layer];
       const layers::LayerState& now = captured_states(pipeline, state, frame + 4)[layer];
-      const double ratio = motion_sampling(pipeline, state.layers, now).density /
-                           motion_sampling(pipeline, state.layers, then).density;
+      const double ratio =
+          motion_sampling(state.layers, now).density / motion_sampling(state.layers, then).density;
       regulator::LayerAssessment other, same;
-      same.identical = other.identical = true;
-      judge_motion_blur(pipeline, state.layers, then, now, other);
+      judge_motion_blur(state.layers, then, now, other);
       EXPECT_EQ(other.fiducials.sampling.magnification, std::max(1.0, ratio));
       EXPECT_EQ(other.fiducials.sampling.minification, std::min(1.0, ratio));
-      EXPECT_TRUE(ratio == 1 || !other.identical);
+      EXPECT_TRUE(ratio == 1 || !now.same_pixels(then));
       some_differ = some_differ || ratio != 1;
-      judge_motion_blur(pipeline, state.layers, then, then, same);
-      EXPECT_TRUE(same.identical);
+      judge_motion_blur(state.layers, then, then, same);
       EXPECT_EQ(same.fiducials.sampling.magnification, 1);
     }
   EXPECT_TRUE(some_differ);
+}
+
+/// A square that crosses the display with an open shutter, evenly, in twelve frames and not a moment longer.
+const std::string kCrossing =
+    "frames: 12\n"
+    "fps: 24\n"
+    "display: [96, 72]\n"
+    "shapes:\n"
+    "  - {id: card, box: [1, 1, 0.01], unlit: true, flight: [{t: 0, position: [-2, 0, 0], target: [-2, 0, "
+    "-9]},\n"
+    "     {t: 0.4583333333333333, position: [2, 0, 0], target: [2, 0, -9]}]}\n"
+    "camera: {fov_deg: 40, position: [0, 0, 6], look_at: [0, 0, 0]}\n"
+    "layers: [{name: card, parts: [card], preferences: {motion_blur: 1}}]\n";
+
+TEST(MotionBlur, TheLastFrameIsAsBlurredAsTheOneBefore) {
+  const tests::TemporaryFolder folder;
+  const Variant crossing = tests::run_of(load_sequence(folder.write("crossing.yaml", kCrossing)));
+  tests::Playback play(crossing.sequence, crossing.settings);
+  for (int frame = 0; frame < 12; ++frame) {
+    const layers::LayerState& now = captured_states(play.pipeline, play.state, frame)[0];
+    const double way_px = 4.0 / 11 / (2 * 6 * std::tan(20 * M_PI / 180)) * 72;  // 4 m in 11 frames, at 6 m
+    EXPECT_NEAR(now.motion_px.x, way_px, 0.2) << frame;
+    EXPECT_NEAR(now.motion_px.y, 0, 1e-6) << frame;
+  }
+}
+
+// The card stops in frame 6. Whoever only extrapolates cannot know that in frame 5.
+TEST(MotionBlur, PredictedMotionIsTheLastOneThatWasSeen) {
+  const tests::TemporaryFolder folder;
+  std::string stops = kCrossing;
+  stops.replace(stops.find("0.4583333333333333"), 18, "0.25");
+  Variant stopping = tests::run_of(load_sequence(folder.write("stopping.yaml", stops)));
+  stopping.settings.regulator.policy = Policy::Lookahead;
+  stopping.settings.regulator.lookahead.predict = regulator::Prediction::Linear;
+  tests::Playback play(stopping.sequence, stopping.settings);
+  std::vector<double> motion_px;
+  for (int frame = 0; frame < 9; ++frame) {
+    play.next();
+    motion_px.push_back(captured_states(play.pipeline, play.state, frame)[0].motion_px.x);
+  }
+  EXPECT_EQ(motion_px[0], 0);  // nothing was seen yet
+  EXPECT_NEAR(motion_px[6], motion_px[3], 0.2);
+  EXPECT_GT(motion_px[6], 5);
+  EXPECT_NEAR(motion_px[7], 0, 1e-6);
 }
 
 }  // namespace
