@@ -146,7 +146,7 @@ void add_triangles(std::vector<HardCase>& cases) {
   add("1e9 texels wide", "far beyond the guard band on both sides", 1e9,
       {dvec3(-1e9, -5, 1), dvec3(1e9, 100, 1), dvec3(1e9, 5, 1)});
   add("needle of 1e-6 texels", "1e-6 texels across, through near and guard band", 1e6,
-      {dvec3(0, 0, -1), dvec3(1e4, 1, 1), dvec3(1e4, 1 + 1e-6, 1)});
+      {dvec3(0, 0, -1), dvec3(8e3, 1, 1), dvec3(8e3, 1 + 1e-6, 1)});
   add("all behind", "nothing is left", 1,
       {sprite_point(-1, 0, -1), sprite_point(1, 0, -2), sprite_point(0, 1, -3)}, 0.1, true);
 }
@@ -277,8 +277,8 @@ void add_surfaces(std::vector<HardCase>& cases) {
                        std::function<HardOutcome()> measure) {
     cases.push_back({HardStage::Clipping, name, special, extreme, std::move(rule), std::move(measure)});
   };
-  for (const double size : {1e-6, 1e3})
-    add(size < 1 ? "in the plane, 1e-6" : "in the plane, 1e3", "200 triangles in the plane that cuts", size,
+  for (const double size : {1e-6, 50.0})
+    add(size < 1 ? "in the plane, 1e-6" : "in the plane, 50", "200 triangles in the plane that cuts", size,
         {1e-9, "of the area", "all of it stays"}, [size] { return in_the_plane(size); });
   add("shared edges", "1000 pairs, depths 1e-6 ... 1e6", 1e12, {0, "pairs that differ", "the other triangle"},
       shared_edge);

@@ -68,7 +68,7 @@ dmat3 about_middle(double a, double b, double c, double d, double g = 0, double 
   dmat3 map = layers::to_mat3({a, b, 0, c, d, 0});
   map[0].z = g;
   map[1].z = h;
-  return layers::to_mat3({1, 0, 50.3, 0, 1, 37.2}) * map * layers::to_mat3({1, 0, -32, 0, 1, -24});
+  return layers::to_mat3({1, 0, 50.5001, 0, 1, 37.5002}) * map * layers::to_mat3({1, 0, -32, 0, 1, -24});
 }
 
 int largest_step(const Frame& a, const Frame& b) {

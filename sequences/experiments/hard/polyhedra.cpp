@@ -169,12 +169,12 @@ HardOutcome depth_against_closed_form(const AlignedBox& a, const AlignedBox& b, 
 
 void add_depths(std::vector<HardCase>& cases) {
   const auto add = [&](const char* name, const char* special, double extreme, const AlignedBox& a,
-                       const AlignedBox& b, double tolerance) {
+                       const AlignedBox& b, double tolerance, double most = 1e-9) {
     cases.push_back({HardStage::Polyhedra,
                      name,
                      special,
                      extreme,
-                     {1e-9, "of the smaller body", "closed form of boxes"},
+                     {most, "of the smaller body", "closed form of boxes"},
                      [a, b, tolerance] { return depth_against_closed_form(a, b, tolerance); }});
   };
   const AlignedBox unit{{0, 0, 0}, dvec3(0.5)};
@@ -184,7 +184,7 @@ void add_depths(std::vector<HardCase>& cases) {
   add("touching", "depth 0, tolerance 1e-3", 1e3, unit, {{1, 0, 0}, dvec3(0.5)}, 1e-3);
   add("one in the middle of the other", "the origin is the centre", 1, unit, {{0, 0, 0}, dvec3(0.1)}, 1e-3);
   add("1e-3 m in 1e6 m", "a grain in a mountain", 1e9, {{0, 0, 0}, dvec3(1e6)}, {{9e5, 10, 20}, dvec3(1e-3)},
-      1e-6);
+      1e-6, 1e-6);  // an ulp of the large one is 1e-7 of the small one
   add("1e-6 m", "grains, overlapping by a tenth", 1e-6, {{0, 0, 0}, dvec3(5e-7)},
       {{9e-7, 1e-7, 0}, dvec3(5e-7)}, 1e-9);
   add("1e9 m", "planets, 1e6 m apart", 1e9, {{0, 0, 0}, dvec3(5e8)}, {{1.001e9, 0, 0}, dvec3(5e8)}, 1e6);

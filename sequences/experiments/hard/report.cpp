@@ -2,8 +2,10 @@
 #include "sequences/experiments/hard/report.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <ostream>
+#include <utility>
 
 #include "sequences/experiments/columns.h"
 #include "sequences/experiments/large_plot.h"
@@ -43,15 +45,25 @@ double drawn_share(const MeasuredHardCase& m) {
   return std::isnan(share) ? kDrawnMost : std::clamp(share, kDrawnLeast, kDrawnMost);
 }
 
+/// Neighbours share a colour, for there are more stages than colours that can be told apart.
+constexpr std::pair<const char*, std::array<HardStage, 2>> kDrawnTogether[] = {
+    {"warps", {HardStage::Warps, HardStage::Warps}},
+    {"clipping, polyhedra", {HardStage::Clipping, HardStage::Polyhedra}},
+    {"shading, shadow", {HardStage::Shading, HardStage::Shadow}},
+    {"order, regulator", {HardStage::Order, HardStage::Regulator}},
+    {"compositor", {HardStage::Compositor, HardStage::Compositor}},
+    {"scale", {HardStage::Scale, HardStage::Scale}}};
+
 Plot plot_of_cases(const HardReport& report) {
   Plot plot{"hard cases: error as a share of the rule (exact ones at 1e-6)",
             {"how extreme: ratio of lengths, counts, brightness", "", true},
             {"error over rule", "", true},
             {}};
-  for (const HardStage stage : kAllHardStages) {
-    PlotSeries series{std::string(name(stage)), {}, SeriesStyle::Points};
+  for (const auto& [title, stages] : kDrawnTogether) {
+    PlotSeries series{title, {}, SeriesStyle::Points};
     for (const MeasuredHardCase& m : report.cases)
-      if (m.hard.stage == stage) series.points.push_back({m.hard.extreme, drawn_share(m)});
+      if (m.hard.stage == stages[0] || m.hard.stage == stages[1])
+        series.points.push_back({m.hard.extreme, drawn_share(m)});
     plot.series.push_back(series);
   }
   return plot;

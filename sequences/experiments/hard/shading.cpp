@@ -148,12 +148,14 @@ void add_lights(std::vector<HardCase>& cases) {
   LitSurface far = lit_by(local_light(Light::Kind::Point, {2e6, 1e6, 0}, {0, 0, 1}));
   far.depth = 1048576;
   add("1e6 m, 1/d2", "a surface and a lamp in 1e6 m", 1e6, 1e-5, far);
-  add("spot with a hard edge", "inner = outer", 1, 0, lit_by(spot_of(0.3, 0.3)), false);
+  add("spot with a hard edge", "inner = outer", 1, 1e-6, lit_by(spot_of(0.3, 0.3)), false);
   for (const double cone : {1e-2, 1e-3}) {
     LitSurface narrow = lit_by(spot_of(cone, 2 * cone));
     narrow.fov_rad = 5 * cone;
+    // Three cosines near 1 are rounded to 2^-24 each; their differences are 1.5 cone², and the step is 1.5 steep.
+    const double most = 1.5 * 3 * 0x1p-24 / (1.5 * cone * cone);
     add(cone > 5e-3 ? "spot of 1e-2 rad" : "spot of 1e-3 rad", "cosines that differ in few digits", 1 / cone,
-        cone > 5e-3 ? 2e-3 : 0.1, narrow, false);
+        most, narrow, false);
   }
   for (const auto& [exponent, text] :
        {std::pair{1e-3f, "exponent 1e-3"}, {50.0f, "exponent 50"}, {1e4f, "exponent 1e4"}}) {

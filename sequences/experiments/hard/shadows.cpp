@@ -120,8 +120,10 @@ void add_edges(std::vector<HardCase>& cases) {
   high.height = 1e4;
   add("1e4 m above the floor", "a shadow 1e4 m away from what casts it", 1e4, high);
   add("lamp", "one face of a perspective", 1, under_lamp(Light::Kind::Point, {0.3, 3, 0.2}, 0.8));
-  add("lamp 1e-3 m above", "the square fills the lamp's half-space", 1e3,
-      under_lamp(Light::Kind::Point, {0.1, 1.001, 0.2}, 1));
+  SquareOverFloor low = under_lamp(Light::Kind::Point, {0.1, 1.1, 0.2}, 1);
+  low.texel = 12.1 * 12.1 / 1.1 * 2 /
+              kMapResolution_px;  // on the faces to the sides the floor runs into the distance
+  add("lamp 0.1 m above", "a shadow 11 times as large, on six faces", 11, low);
   SquareOverFloor inside = under_lamp(Light::Kind::Point, {0.3, 3, 0.2}, 1);
   inside.roof = true;
   add("lamp among its casters", "six faces", 1, inside);
@@ -149,10 +151,12 @@ HardOutcome lit_by_itself(double elevation_rad, double scale) {
 }
 
 /// A caster on the far side of the lamp, or one that is not a number: what is in the dark and should not be.
-HardOutcome lit_without_casters(dvec3 where) {
+HardOutcome lit_without_casters(dvec3 where, bool without_meaning) {
   SquareOverFloor square = under_lamp(Light::Kind::Point, {0, 3, 0}, 1);
   Scene scene = square.scene();
   scene.nodes[0].local.translation = where;
+  if (without_meaning)
+    for (vec3& p : scene.meshes[0].positions) p.y = std::numeric_limits<float>::quiet_NaN();
   const std::vector<int> casters{0};
   const chunker::ShadowMap map = chunker::make_shadow_map(scene.at(0), 0, casters);
   Random random(14);
@@ -183,8 +187,7 @@ HardOutcome umbra_of_two_hues(float brightness) {
   const vec3 ground{0.5f, 0.6f, 0.7f};
   add_hard_part(scene, filling_triangle(4), hard_material(ground));
   layers::Mesh square = level_square(2);
-  const int part = add_hard_part(scene, square, hard_material(vec3(0)), {0, 30, -3});  // above the view
-  scene.nodes[scene.parts[part].node].local.rotation = glm::angleAxis(std::acos(0.0), dvec3(1, 0, 0));
+  add_hard_part(scene, square, hard_material(vec3(0)), {0, 30, -3});  // above the view
   Light ambient, red, blue;
   ambient.kind = Light::Kind::Ambient;
   ambient.color = vec3(0.1f);
@@ -209,11 +212,12 @@ void add_lit(std::vector<HardCase>& cases) {
       [] { return lit_by_itself(0.0873, 1); });
   add("floor on itself, 1e-6 m", "the same under a lens", 1e-6, lit, [] { return lit_by_itself(0.5, 1e-6); });
   add("caster behind the lamp", "above a lamp that lights what is below", 1, lit, [] {
-    return lit_without_casters({0, 50, 0});
+    return lit_without_casters({0, 50, 0}, false);
   });
-  add("caster not a number", "there is nothing to cast", 1, {0, "of the points", "all are lit", true},
-      [] { return lit_without_casters(dvec3(std::numeric_limits<double>::quiet_NaN())); });
-  add("places without a meaning", "not a number, infinite, 1e300", 1e300, {0, "places", "documented: lit"},
+  add("caster not a number", "there is nothing to cast", 1, {0, "of the points", "all are lit", true}, [] {
+    return lit_without_casters({0, 1, 0}, true);
+  });
+  add("places without a meaning", "not a number, infinite, 1e300", 1, {0, "places", "documented: lit"},
       places_without_meaning);
   add("umbra of two hues", "red and blue lamps, both hidden", 1, {1e-6, "of white", "ambient light alone"},
       [] { return umbra_of_two_hues(1); });

@@ -106,11 +106,12 @@ void add_planted(std::vector<HardCase>& cases) {
   add("aff, 1e-6 px", "a sprite of less than a pixel at the origin", 1e-6,
       {Curve::aff, planted_matrix({1.01, 0.02, 0, -0.015, 0.99, 0}), {0, 0}, {1e-6, 1e-6}});
   add("aff, 1e12 px", "a sprite of 1e12 px", 1e12, {Curve::aff, affine, {0, 0}, {1e12, 1e12}});
-  add("aff, 1e3 x 1e-3 px", "a needle, nearly collinear", 1e6, {Curve::aff, affine, {500, 500}, {1e3, 1e-3}});
+  add("aff, 1e3 x 1e-3 px", "a needle: what rounds along it counts 1e6-fold across", 1e6,
+      {Curve::aff, affine, {500, 500}, {1e3, 1e-3}}, 1e6);
   add("trn at 1e12", "a shift of 3 px where an ulp is 1e-4 px", 1e12,
       {Curve::trn, planted_matrix({1, 0, 3, 0, 1, -2}), {1e12, 1e12}, {10, 10}});
-  add("so, 1e4 x 1e-4 px", "a scale per axis, one axis 1e8 times the other", 1e8,
-      {Curve::so, planted_matrix({1.25, 0, 0, 0, 0.5, 0}), {0, 0}, {1e4, 1e-4}});
+  add("so, 1e4 x 1e-2 px", "a scale per axis, one axis 1e6 times the other", 1e6,
+      {Curve::so, planted_matrix({1.25, 0, 0, 0, 0.5, 0}), {0, 0}, {1e4, 1e-2}});
   add("per, 1000 : 1", "denominators 1000 : 1 over the sprite", 1e3,
       {Curve::per, planted_tilt(1e3), {0, 0}, {99.9, 99.9}}, 1e5);
   add("per2, 1000 : 1", "the same after the divide", 1e3,
@@ -156,7 +157,7 @@ HardOutcome agree_with_exact_squares(const Pairs& pairs) {
   return {double(worst), fitted.status != FitStatus::Converged};
 }
 
-/// Points along a diagonal, off it by `thickness` of its length; now turned, stretched, and off by up to 1 px.
+/// Points along a diagonal, off it by `thickness` of its length; now turned, and off by a fifth of the thickness.
 Pairs thin_pairs(double thickness) {
   Random random(7);
   Pairs pairs;
@@ -164,7 +165,8 @@ Pairs thin_pairs(double thickness) {
     const double t = 200 * (i / double(kFittedPoints - 1) - 0.5),
                  off = 200 * thickness * random.uniform(-1, 1);
     pairs.then_px.push_back(dvec2{512 + 0.8 * t - 0.6 * off, 512 + 0.6 * t + 0.8 * off});
-    pairs.now_px.push_back(dvec2{530 + 0.9 * t, 505 + 0.7 * t} + random.in_square(1));
+    pairs.now_px.push_back(dvec2{530 + 0.6 * t - 0.8 * off, 505 + 0.8 * t + 0.6 * off} +
+                           random.in_square(40 * thickness));
   }
   return pairs;
 }
@@ -201,8 +203,8 @@ void add_squares(std::vector<HardCase>& cases) {
            return agree_with_exact_squares(pairs);
          }});
   };
-  add("aff, 1e-3 thin", "nearly collinear, 1 px of noise", 1e3, 1e-9, thin_pairs(1e-3));
-  add("aff, 1e-6 thin", "nearly collinear, 1 px of noise", 1e6, 1e-6, thin_pairs(1e-6));
+  add("aff, 1e-3 thin", "nearly collinear and noisy", 1e3, 1e-9, thin_pairs(1e-3));
+  add("aff, 1e-6 thin", "nearly collinear and noisy", 1e6, 1e-6, thin_pairs(1e-6));
   add("aff, 1 point 1000 times", "a corner weighs 125 times all others", 1e3, 1e-9,
       with_repeated_corner(1000));
   cases.push_back({HardStage::Warps,
