@@ -87,7 +87,7 @@ Exact apart(const std::vector<Texel2>& a, const std::vector<Texel2>& b) {
     for (const Texel2& p : *from) {
       Exact nearest = HUGE_VALL;
       for (const Texel2& q : *to) nearest = std::min(nearest, std::hypot(p.x - q.x, p.y - q.y));
-      worst = std::max(worst, nearest);
+      worst = worse(worst, nearest);
     }
   return worst;
 }
@@ -104,7 +104,7 @@ HardOutcome clip_against_lines(const Corners& q, const ClipRegion& region) {
   for (const WeightPoint& p : remaining_corners(lines_of(q, region))) right.push_back(texel_of(q, p.u, p.v));
   if (points.empty() || right.empty())
     return {points.empty() == right.empty() ? 0 : HUGE_VAL, points.empty()};
-  return {double(std::max(apart(points, right), apart(weighed, right))), false};
+  return {double(worse(apart(points, right), apart(weighed, right))), false};
 }
 
 /// A display of 640 × 480 whose focal length is its half height.
@@ -174,7 +174,7 @@ HardOutcome in_the_plane(double size) {
       const dvec3 &a = polygon.vertices[i].weights, &b = polygon.vertices[(i + 1) % polygon.count].weights;
       doubled += a.y * b.z - b.y * a.z;
     }
-    worst = std::max(worst, std::fabs(1 - doubled));
+    worst = worse(worst, std::fabs(1 - doubled));
   }
   return {worst, false};
 }
@@ -267,7 +267,7 @@ HardOutcome material_points_in_both_views(double scale) {
     for (const layers::HalfSpace& h : planes) {
       const layers::dvec4& c = p.clip[h.state];
       const Exact height = Exact(h.x) * c.x + Exact(h.y) * c.y + Exact(h.w) * c.w + h.constant;
-      worst = std::max(worst, -height / c.w);
+      worst = worse(worst, -height / c.w);
     }
   return {double(worst), false};
 }

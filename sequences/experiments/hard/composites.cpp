@@ -168,7 +168,7 @@ HardOutcome as_in_exact(const std::vector<const Sprite*>& sprites, const layers:
       }
       const Linear16& got = frame.pixels[std::size_t(y) * kStackDisplay_px.x + x];
       for (const Exact off : {got.r - c.r, got.g - c.g, got.b - c.b, got.a - c.a})
-        worst = std::max(worst, std::fabs(off));
+        worst = worse(worst, std::fabs(off));
     }
   return {double(worst / kOne), false};
 }

@@ -14,6 +14,7 @@
 ///
 /// Every case is a pure function: equal in every run and for any number of threads.
 
+#include <cmath>
 #include <functional>
 #include <span>
 #include <string_view>
@@ -26,6 +27,13 @@ inline constexpr HardStage kAllHardStages[] = {
     HardStage::Warps, HardStage::Clipping,  HardStage::Polyhedra,  HardStage::Shading, HardStage::Shadow,
     HardStage::Order, HardStage::Regulator, HardStage::Compositor, HardStage::Scale};
 std::string_view name(HardStage stage);
+
+/// The larger of two errors ≥ 0; one that is not a number is as wrong as can be.
+template <typename Real>
+Real worse(Real worst_yet, Real error) {
+  if (std::isnan(worst_yet) || std::isnan(error)) return static_cast<Real>(HUGE_VAL);
+  return error <= worst_yet ? worst_yet : error;
+}
 
 /// What an answer must keep. All texts are literals.
 struct HardRule {

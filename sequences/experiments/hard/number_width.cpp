@@ -7,6 +7,7 @@
 #include <functional>
 
 #include "layers/state.h"
+#include "sequences/experiments/hard/hard_case.h"
 #include "sequences/experiments/warps/point_workload.h"
 #include "warp/fit.h"
 
@@ -48,7 +49,7 @@ double planted_error(const PlantedSprite& sprite, const AffineIn<Real>& fitted) 
                 y = Real(sprite.offset + p.y);  // the points as this width holds them
     const Exact u = Exact(fitted.a) * x + Exact(fitted.b) * y + fitted.tx - sprite.offset;
     const Exact v = Exact(fitted.c) * x + Exact(fitted.d) * y + fitted.ty - sprite.offset;
-    worst = std::max(worst, std::hypot(u - sprite.moved(p).x, v - sprite.moved(p).y));
+    worst = worse(worst, std::hypot(u - sprite.moved(p).x, v - sprite.moved(p).y));
   }
   return double(worst);
 }
@@ -167,7 +168,7 @@ double error_of_projection(double ratio, bool eye_first) {
     }
     const Exact dx = box.focal_px * (Exact(got[0]) / -got[2] - right[0] / -right[2]);
     const Exact dy = box.focal_px * (Exact(got[1]) / -got[2] - right[1] / -right[2]);
-    worst = std::max(worst, std::hypot(dx, dy));
+    worst = worse(worst, std::hypot(dx, dy));
   }
   return double(worst);
 }
@@ -192,8 +193,8 @@ double error_of_tool_projection(double ratio) {
     const layers::dvec4 clip =
         clip_from_world * layers::dvec4(double(corner[0]), double(corner[1]), double(corner[2]), 1);
     const dvec2 got = layers::screen_from_clip(clip, display);
-    worst = std::max(worst, std::hypot(got.x - (512 + box.focal_px * right[0] / -right[2]),
-                                       got.y - (512 - box.focal_px * right[1] / -right[2])));
+    worst = worse(worst, std::hypot(got.x - (512 + box.focal_px * right[0] / -right[2]),
+                                    got.y - (512 - box.focal_px * right[1] / -right[2])));
   }
   return double(worst);
 }

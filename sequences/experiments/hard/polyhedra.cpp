@@ -30,7 +30,11 @@ Exact exact_dot(const dvec3& a, const dvec3& b) {
 
 Exact support_along(const PointSet& points, const dvec3& n) {
   Exact most = -HUGE_VALL;
-  for (const dvec3& p : points) most = std::max(most, exact_dot(p, n));
+  for (const dvec3& p : points) {
+    const Exact along = exact_dot(p, n);
+    if (!(along <= most)) most = along;
+    if (std::isnan(along)) break;
+  }
   return most;
 }
 
@@ -59,7 +63,7 @@ HardOutcome contains_all(const PointSet& points, double scale) {
     if ((empty = hull.points.empty())) continue;
     for (int i = 0; i < 2000; ++i) {
       const dvec3 n = any_direction(random);
-      worst = std::max(worst, (support_along(points, n) - support_along(hull.points, n)) / scale);
+      worst = worse(worst, (support_along(points, n) - support_along(hull.points, n)) / scale);
     }
   }
   return {double(worst), empty};
@@ -128,7 +132,7 @@ HardOutcome areas_close(const PointSet& points) {
       for (int k = 0; k < 3; ++k) sum[k] += area[k];
       total += std::sqrt(exact_dot(area, area));
     }
-    worst = std::max(worst, double(std::hypot(sum[0], sum[1], sum[2]) / total));
+    worst = worse(worst, double(std::hypot(sum[0], sum[1], sum[2]) / total));
   }
   return {worst, false};
 }
@@ -163,7 +167,7 @@ HardOutcome depth_against_closed_form(const AlignedBox& a, const AlignedBox& b, 
   const Exact right = exact_depth(a, b);
   const double size =
       2 * std::min(std::max({a.half.x, a.half.y, a.half.z}), std::max({b.half.x, b.half.y, b.half.z}));
-  const Exact off = std::max({Exact(decision.lower) - right, right - decision.upper, Exact(0)}) / size;
+  const Exact off = worse(worse(Exact(0), Exact(decision.lower) - right), right - decision.upper) / size;
   return {decision.deeper == (right > tolerance) ? double(off) : 1.0, false};
 }
 
@@ -185,9 +189,9 @@ void add_depths(std::vector<HardCase>& cases) {
   add("one in the middle of the other", "the origin is the centre", 1, unit, {{0, 0, 0}, dvec3(0.1)}, 1e-3);
   add("1e-3 m in 1e6 m", "a grain in a mountain", 1e9, {{0, 0, 0}, dvec3(1e6)}, {{9e5, 10, 20}, dvec3(1e-3)},
       1e-6, 1e-6);  // an ulp of the large one is 1e-7 of the small one
-  add("1e-6 m", "grains, overlapping by a tenth", 1e-6, {{0, 0, 0}, dvec3(5e-7)},
+  add("grains of 1e-6 m", "overlapping by a tenth", 1e-6, {{0, 0, 0}, dvec3(5e-7)},
       {{9e-7, 1e-7, 0}, dvec3(5e-7)}, 1e-9);
-  add("1e9 m", "planets, 1e6 m apart", 1e9, {{0, 0, 0}, dvec3(5e8)}, {{1.001e9, 0, 0}, dvec3(5e8)}, 1e6);
+  add("planets of 1e9 m", "1e6 m apart", 1e9, {{0, 0, 0}, dvec3(5e8)}, {{1.001e9, 0, 0}, dvec3(5e8)}, 1e6);
   add("flat on flat", "two cards in one place", 1, {{0, 0, 0}, {0.5, 0.5, 0}}, {{0.2, 0, 0}, {0.5, 0.5, 0}},
       1e-3);
 }

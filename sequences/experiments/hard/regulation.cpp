@@ -80,7 +80,7 @@ HardOutcome best_choice(const std::function<ChoiceProblem(std::uint64_t)>& probl
     const regulator::Choice choice = regulator::optimal_choice(problem.candidates, problem.budget);
     const long double best = best_by_trial(problem), got = benefit_of(problem, choice.layers);
     if (!within_budget(problem, choice.layers)) return {1, false};
-    worst = std::max(worst, best > 0 ? (best - got) / best : got);
+    worst = worse(worst, best > 0 ? (best - got) / best : got);
   }
   return {double(worst), false};
 }

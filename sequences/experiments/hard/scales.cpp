@@ -50,8 +50,28 @@ void add_pictures(std::vector<HardCase>& cases) {
   add("picture, 1e-6", "a world of 10 micrometres", 1e-6, 0.005, 2);
   add("picture, 1e6", "a world of 10,000 km", 1e6, 0.005, 2);
   add("picture, 1e-15", "a world of 10 femtometres", 1e-15, 0.005, 2);
-  add("picture, 1e18", "a world of 1,000 light years", 1e18, 0.005, 2);
+  add("picture, 5e17", "a world of 500 light years", 5e17, 0.005, 2);
   add("picture, 1e6 away", "a world far from its origin", 1, 0.005, 2, {1e6, -1e6, 1e6}, 1e6);
+}
+
+/// Beyond what the renderer's floats hold, a reader says so.
+void add_refused_worlds(std::vector<HardCase>& cases) {
+  for (const auto& [scale, text] : {std::pair{1e19, "world of 1e20 m"}, {1e-20, "world of 1e-19 m"}})
+    cases.push_back({HardStage::Scale,
+                     text,
+                     "squares of distances are no floats",
+                     scale,
+                     {0, "wrong pictures", "refused with the rule", true},
+                     [scale = scale] {
+                       return HardOutcome{0, !layers::first_defect(hard_world(scale)).empty()};
+                     }});
+}
+
+/// What is drawn is never refused: the largest and the smallest world of the table.
+HardOutcome worlds_without_defect() {
+  int refused = 0;
+  for (const double scale : {1e-15, 5e17}) refused += !layers::first_defect(hard_world(scale)).empty();
+  return {double(refused), false};
 }
 
 // --- Places on the display
@@ -84,7 +104,7 @@ HardOutcome places_on_display(const Scene& scene, double t_s) {
       Exact x = 0, y = 0;
       project_in_exact(frame.camera, view.display_px, state.world_points[i], x, y);
       const dvec2 got = layers::screen_from_clip(state.clip_points[i], view.display_px);
-      worst = std::max(worst, std::hypot(got.x - x, got.y - y));
+      worst = worse(worst, std::hypot(got.x - x, got.y - y));
       ++points;
     }
   }
@@ -123,8 +143,7 @@ HardOutcome spun_for(double t_s) {
   scene.tracks.push_back({0, layers::SpinTrack{{0, 0, 1}, 0.7}});
   const layers::dmat4 got = scene.at(t_s).world_from_node[0];
   const Exact angle = Exact(0.7) * t_s;
-  return {double(std::max(std::fabs(got[0].x - std::cos(angle)), std::fabs(got[0].y - std::sin(angle)))),
-          false};
+  return {double(worse(std::fabs(got[0].x - std::cos(angle)), std::fabs(got[0].y - std::sin(angle)))), false};
 }
 
 /// Keys 1e-9 s apart, late: the value half between them.
@@ -229,6 +248,13 @@ void add_runs(std::vector<HardCase>& cases) {
 std::vector<HardCase> hard_scales() {
   std::vector<HardCase> cases;
   add_pictures(cases);
+  add_refused_worlds(cases);
+  cases.push_back({HardStage::Scale,
+                   "worlds of 1e-14 and 5e18 m",
+                   "the limits of what is read",
+                   1e15,
+                   {0, "worlds refused", "drawn above"},
+                   worlds_without_defect});
   add_places(cases);
   add_times(cases);
   add_runs(cases);

@@ -92,7 +92,7 @@ HardOutcome against_closed_form(const LitSurface& lit, bool of_each) {
       const Exact right = lit.right(x, y), got = picture.linear.at(x, y).r;
       if (!std::isfinite(got)) return {HUGE_VAL, false};
       brightest = std::max(brightest, right);
-      worst = std::max(worst, std::fabs(got - right) / (of_each && right > 0 ? right : Exact(1)));
+      worst = worse(worst, std::fabs(got - right) / (of_each && right > 0 ? right : Exact(1)));
     }
   return {double(of_each || brightest == 0 ? worst : worst / brightest), false};
 }
@@ -221,7 +221,7 @@ HardOutcome minified(double repeats) {
   const auto linear = [](double srgb) { return std::pow((srgb / 255 + 0.055) / 1.055, 2.4); };
   const double mean = (linear(230) + linear(60)) / 2;
   double worst = 0;
-  for (const chunker::LinearColor& c : picture.linear.texels) worst = std::max(worst, std::fabs(c.r - mean));
+  for (const chunker::LinearColor& c : picture.linear.texels) worst = worse(worst, std::fabs(c.r - mean));
   return {worst, false};
 }
 
@@ -235,8 +235,8 @@ HardOutcome faint(float opacity) {
   const HardPicture picture = draw_hard(scene, {kShadedSide_px, kShadedSide_px});
   double worst = 0;
   for (const chunker::LinearColor& c : picture.linear.texels)
-    worst = std::max<double>(
-        {worst, std::fabs(c.a - opacity), std::fabs(c.r - opacity), std::fabs(c.b - 0.25 * opacity)});
+    for (const double off : {c.a - opacity, c.r - opacity, c.b - opacity / 4})
+      worst = worse(worst, std::fabs(off));
   return {worst / opacity, false};
 }
 
@@ -261,7 +261,7 @@ HardOutcome decision_side() {
     const ExactVector p = lit.place(n % kShadedSide_px, n / kShadedSide_px * 16);
     const layers::SurfacePoint point{{double(p.x), double(p.y), double(p.z)}, {0, 0, 1}, {0, 0, 0}};
     const Exact right = std::min(Exact(1), lit.right(n % kShadedSide_px, n / kShadedSide_px * 16));
-    worst = std::max(worst, std::fabs(layers::shaded_color(surface, frame.lights, point).x - right));
+    worst = worse(worst, std::fabs(layers::shaded_color(surface, frame.lights, point).x - right));
   }
   return {double(worst), false};
 }

@@ -73,7 +73,7 @@ HardOutcome edge_of_shadow(const SquareOverFloor& square) {
     const Exact beyond = std::max(std::fabs(x), std::fabs(z)) - shadow.half;  // > 0: lit
     const dvec3 floor{double(shadow.x + x), 0, double(shadow.z + z)};
     const float seen = map.visibility(square.origin + floor * square.scale);
-    if (seen != (beyond > 0 ? 1 : 0)) worst = std::max(worst, std::fabs(beyond) / square.texel);
+    if (seen != (beyond > 0 ? 1 : 0)) worst = worse(worst, std::fabs(beyond) / square.texel);
   }
   return {double(worst), map.empty()};
 }
@@ -108,7 +108,8 @@ void add_edges(std::vector<HardCase>& cases) {
   add("sun overhead", "the map looks straight down", 1, under_sun(overhead));
   add("sun at 5 degrees", "texels 11 times as long on the floor", 11, under_sun(0.0873));
   add("sun at 0.1 degrees", "texels 570 times as long on the floor", 570, under_sun(0.001745));
-  for (const auto& [scale, text] : {std::pair{1e-6, "1e-6 m"}, {1e6, "1e6 m"}, {1e9, "1e9 m"}}) {
+  for (const auto& [scale, text] :
+       {std::pair{1e-6, "sun, 1e-6 m"}, {1e6, "sun, 1e6 m"}, {1e9, "sun, 1e9 m"}}) {
     SquareOverFloor square = under_sun(0.8);
     square.scale = scale;
     add(text, "the same world in other units", scale, square);
@@ -199,7 +200,9 @@ HardOutcome umbra_of_two_hues(float brightness) {
   for (const int light : {1, 2}) scene.lights[light].casts_shadow = true;
   const HardPicture picture = draw_hard(scene, {33, 33});
   const chunker::LinearColor& c = picture.linear.at(16, 16);
-  return {std::max({std::fabs(c.r - 0.05), std::fabs(c.g - 0.06), std::fabs(c.b - 0.07)}), false};
+  double worst = 0;
+  for (const double off : {c.r - 0.05, c.g - 0.06, c.b - 0.07}) worst = worse(worst, std::fabs(off));
+  return {worst, false};
 }
 
 void add_lit(std::vector<HardCase>& cases) {

@@ -69,8 +69,8 @@ HardOutcome recover_planted(const PlantedMotion& motion) {
   const FitResult fitted = warp::fit(then_px, now_px, motion.curve);
   Exact worst = 0;
   for (int i = 0; i < kFittedPoints; ++i)
-    worst = std::max(
-        worst, exact_distance(image_in_exact(fitted.warp.now_from_then, exact_of(then_px[i])), right[i]));
+    worst = worse(worst,
+                  exact_distance(image_in_exact(fitted.warp.now_from_then, exact_of(then_px[i])), right[i]));
   return {double(worst / (largest * kDoubleUlp)), fitted.status != FitStatus::Converged};
 }
 
@@ -152,8 +152,8 @@ HardOutcome agree_with_exact_squares(const Pairs& pairs) {
   const ExactLeastSquares right(pairs);
   Exact worst = 0;
   for (const dvec2& p : pairs.then_px)
-    worst = std::max(
-        worst, exact_distance(image_in_exact(fitted.warp.now_from_then, exact_of(p)), right(exact_of(p))));
+    worst = worse(worst,
+                  exact_distance(image_in_exact(fitted.warp.now_from_then, exact_of(p)), right(exact_of(p))));
   return {double(worst), fitted.status != FitStatus::Converged};
 }
 
@@ -189,7 +189,7 @@ HardOutcome hand_over() {
     std::vector<dvec2> images;
     for (const dvec2& p : pairs.then_px) images.push_back(fitted.warp(p));
     for (std::size_t i = 0; i < before.size(); ++i)
-      worst = std::max(worst, std::hypot(images[i].x - before[i].x, images[i].y - before[i].y));
+      worst = worse(worst, std::hypot(images[i].x - before[i].x, images[i].y - before[i].y));
     before = images;
   }
   return {worst, false};
@@ -217,12 +217,25 @@ void add_squares(std::vector<HardCase>& cases) {
 
 // --- Largest errors
 
-/// How far our largest error is above Ceres's, or our lower bound above what Ceres reached: no such bound can be right.
+/// Largest distance of an image from its point, in long double.
+Exact largest_in_exact(const dmat3& map, const Pairs& pairs) {
+  Exact largest = 0;
+  for (std::size_t i = 0; i < pairs.size(); ++i)
+    largest = worse(
+        largest, exact_distance(image_in_exact(map, exact_of(pairs.then_px[i])), exact_of(pairs.now_px[i])));
+  return largest;
+}
+
+/// How far our largest error is above Ceres's, or our lower bound above what Ceres reached (no such bound can be right), or
+/// the stated error off the true one.
 HardOutcome not_above_ceres(const Pairs& pairs, Curve curve) {
   const FitResult fitted = warp::fit(pairs.then_px, pairs.now_px, curve);
   const FitResult ceres = warp::ceres_max_norm(pairs.then_px, pairs.now_px, warp::family_of(curve));
-  const double excess = std::max(fitted.max_px, fitted.max_lower_bound_px) - ceres.max_px;
-  return {std::max(0.0, excess / ceres.max_px), fitted.status != FitStatus::Converged};
+  const Exact reached = largest_in_exact(ceres.warp.now_from_then, pairs);
+  const Exact ours = largest_in_exact(fitted.warp.now_from_then, pairs);
+  const Exact excess =
+      worse(worse(ours - reached, fitted.max_lower_bound_px - reached), std::fabs(ours - fitted.max_px));
+  return {double(worse(Exact(0), excess / reached)), fitted.status != FitStatus::Converged};
 }
 
 Pairs scaled_pairs(Pairs pairs, double scale, dvec2 offset) {
@@ -236,7 +249,7 @@ Exact smallest_disc_by_trial(std::span<const dvec2> points) {
   Exact best = HUGE_VALL;
   const auto try_centre = [&](ExactPoint c) {
     Exact radius = 0;
-    for (const dvec2& p : points) radius = std::max(radius, exact_distance(c, exact_of(p)));
+    for (const dvec2& p : points) radius = worse(radius, exact_distance(c, exact_of(p)));
     best = std::min(best, radius);
   };
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -255,8 +268,8 @@ Exact smallest_disc_by_trial(std::span<const dvec2> points) {
 HardOutcome agree_with_all_discs(const std::vector<dvec2>& points) {
   const warp::EnclosingDisc disc = warp::smallest_enclosing_disc(points);
   const Exact right = smallest_disc_by_trial(points);
-  const Exact off = std::max(Exact(disc.radius) - right, Exact(disc.lower) - right);
-  return {double(std::max(Exact(0), off) / right), false};
+  const Exact off = worse(Exact(disc.radius) - right, Exact(disc.lower) - right);
+  return {double(worse(Exact(0), off / right)), false};
 }
 
 std::vector<dvec2> points_on_circle(int count, double radius, dvec2 centre, double wobble) {
@@ -310,10 +323,7 @@ HardOutcome honest_refusal(const Pairs& pairs, Curve curve) {
   const bool refused = fitted.status == FitStatus::Degenerate || fitted.status == FitStatus::TooFewPoints;
   const dmat3& m = fitted.warp.now_from_then;
   if (m[0].x * m[1].y - m[1].x * m[0].y <= 0) return {HUGE_VAL, refused};
-  Exact largest = 0;
-  for (std::size_t i = 0; i < pairs.size(); ++i)
-    largest = std::max(
-        largest, exact_distance(image_in_exact(m, exact_of(pairs.then_px[i])), exact_of(pairs.now_px[i])));
+  const Exact largest = largest_in_exact(m, pairs);
   return {double(std::fabs(largest - fitted.max_px) / std::max(largest, Exact(1))), refused};
 }
 
