@@ -47,11 +47,11 @@ void add_pictures(std::vector<HardCase>& cases) {
   add("picture, 2^20", "powers of two change no bit", 0x1p20, 0, 0);
   add("picture, 2^-40", "a world of 10 picometres", 0x1p-40, 0, 0);
   add("picture, 2^40", "a world of 10^13 m", 0x1p40, 0, 0);
-  add("picture, 1e-6", "a world of 10 micrometres", 1e-6, 0.005, 2);
-  add("picture, 1e6", "a world of 10,000 km", 1e6, 0.005, 2);
-  add("picture, 1e-15", "a world of 10 femtometres", 1e-15, 0.005, 2);
-  add("picture, 5e17", "a world of 500 light years", 5e17, 0.005, 2);
-  add("picture, 1e6 away", "a world far from its origin", 1, 0.005, 2, {1e6, -1e6, 1e6}, 1e6);
+  add("picture, 1e-6", "a world of 10 micrometres", 1e-6, 0.01, 2);
+  add("picture, 1e6", "a world of 10,000 km", 1e6, 0.01, 2);
+  add("picture, 1e-15", "a world of 10 femtometres", 1e-15, 0.01, 2);
+  add("picture, 5e17", "a world of 500 light years", 5e17, 0.01, 2);
+  add("picture, 1e6 away", "a world far from its origin", 1, 0.01, 2, {1e6, -1e6, 1e6}, 1e6);
 }
 
 /// Beyond what the renderer's floats hold, a reader says so.
