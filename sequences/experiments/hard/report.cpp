@@ -7,8 +7,8 @@
 #include <ostream>
 #include <utility>
 
-#include "sequences/experiments/columns.h"
 #include "sequences/experiments/large_plot.h"
+#include "sequences/experiments/named_values.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 
