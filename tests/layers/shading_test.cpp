@@ -207,6 +207,7 @@ TEST(ShadeState, AnotherLampChangesTheShadow) {
   other.kind = Light::Kind::Point;
   other.position = {0, 3, 0};
   room.scene.lights.push_back(other);
+  room.specs[0].shading.shadows_as = ShadowsAs::Shade;
   const auto then = states_of(room);
   room.scene.lights.back().position = {0, 3, 1};
   const auto now = states_of(room);
