@@ -30,6 +30,7 @@ layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const lay
   bound.surface_why_not = change.why_not;
   if (!layers::is_built(layers::Effect::ColorWarp) || !change.possible()) return bound;
   bound.surface = layers::mean_surface(pipeline.scene, layer);
+  layers::add_light_samples(pipeline.scene, pipeline.settings.material_points, bound);
   if (layer.factored.specular) bound.surface->specular = layers::dvec3(0.0);  // in a sprite of its own
   return bound;
 }
