@@ -27,6 +27,14 @@ Geometric geometric_of(const LayerState& now, const Correspondences& matched, co
   return {measured.max_px, matched.now_px[measured.worst_point], measured.worst_point};
 }
 
+/// The bounding box of what is shown now on the display at the instant of rendering: the same however far the
+/// sprite reaches.
+RectD shown_rect(const Correspondences& matched) {
+  RectD bounds;
+  for (const dvec2& p : matched.then_px) bounds.include(p);
+  return bounds;
+}
+
 /// The bounding box of the sprite on the display at the instant of rendering.
 RectD display_rect(const SpritePlacement& placement) {
   RectD bounds;
@@ -41,7 +49,8 @@ RectD display_rect(const SpritePlacement& placement) {
 
 Report assess(const LayerState& then, const LayerState& now, const SpritePlacement& placement,
               const Correspondences& matched, const warp::FitResult& fitted) {
-  Report report{geometric_of(now, matched, fitted), sampling_over(fitted.warp, display_rect(placement)),
+  Report report{geometric_of(now, matched, fitted),
+                sampling_over(fitted.warp, matched.overlap ? shown_rect(matched) : display_rect(placement)),
                 visibility_of(then, now, placement, fitted.warp)};
   report.shade = shade_motion(then, now);
   if (report.shade.px > report.geometric.px) report.geometric.where_px = report.shade.where_px;

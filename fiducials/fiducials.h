@@ -63,10 +63,11 @@ struct LightRef {
 struct Photometric {
   bool computed = false;
   std::string_view why_not = "";
-  dvec3 multiplier{1, 1, 1};   ///< the colour warp W_C, 0 … 1 per channel; 1 at rest
-  double color = 0;            ///< largest ‖C - W_C Ĉ‖: linear light, 1 is white, at most √3
-  dvec2 where_px{0, 0};        ///< display position now of the worst point
-  int point = -1;              ///< characteristic point; -1: none differs
+  dvec3 multiplier{1, 1, 1};  ///< the colour warp W_C, 0 … 1 per channel; 1 at rest
+  double color = 0;           ///< largest ‖C - W_C Ĉ‖: linear light, 1 is white, at most √3
+  dvec2 where_px{0, 0};       ///< display position now of the worst point
+  int point = -1;  ///< characteristic point, or, counted on behind those, a place of fiducials/lit_places.h;
+                   ///< -1: none differs
   LightRef color_light;        ///< the light that changed most at that point
   double light_angle_rad = 0;  ///< largest change of a light's direction about the layer, 0 … π
   LightRef angle_light;        ///< that light, or the eye as seen by highlights

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "fiducials/lit_places.h"
 #include "layers/built_effects.h"
 #include "layers/point_shading.h"
 #include "warp/color.h"
@@ -46,7 +47,8 @@ struct SeenColors {
   layers::InlineVector<int, layers::Correspondences::kRoom> point;
 };
 
-SeenColors seen_colors(const LayerState& then, const LayerState& now) {
+/// The characteristic points, and behind them the pairs.
+SeenColors seen_colors(const LayerState& then, const LayerState& now, const std::vector<LitPair>& pairs) {
   SeenColors seen;
   const std::size_t count = now.point_colors.size();
   seen.then.reserve(count), seen.now.reserve(count), seen.point.reserve(count);
@@ -58,6 +60,11 @@ SeenColors seen_colors(const LayerState& then, const LayerState& now) {
       seen.point.push_back(static_cast<int>(i));
     }
     if (!seen.point.empty()) break;
+  }
+  for (std::size_t k = 0; k < pairs.size(); ++k) {
+    seen.then.push_back(pairs[k].then_color);
+    seen.now.push_back(pairs[k].now_color);
+    seen.point.push_back(static_cast<int>(count + k));
   }
   return seen;
 }
@@ -75,40 +82,48 @@ warp::ColorFit fit(const SeenColors& seen, const PhotometricOptions& options) {
   return identity;
 }
 
-layers::SurfacePoint surface_point(const LayerState& state, int point) {
-  return {state.world_points[point], state.world_normals[point], state.eye()};
+/// A characteristic point as it is shaded in the two states.
+LitPair pair_at(const LayerState& then, const LayerState& now, int point) {
+  const auto at = [point](const LayerState& s) {
+    return layers::SurfacePoint{s.world_points[point], s.world_normals[point], s.eye()};
+  };
+  return {at(then), at(now)};
 }
 
-/// The light whose share at the point the multiplier follows worst.
-int light_that_changed(const LayerState& then, const LayerState& now, const LayerBound& bound, int point,
-                       const dvec3& multiplier) {
+/// The light whose share at the place the multiplier follows worst.
+int light_that_changed(const LayerState& then, const LayerState& now, const LayerBound& bound,
+                       const LitPair& place, const dvec3& multiplier) {
   int worst = LightRef::kNone;
   double most = 0;
   for (std::size_t l = 0; l < std::min(then.lights.size(), now.lights.size()); ++l) {
-    const dvec3 before = share_of_light(*bound.surface, then.lights[l], surface_point(then, point));
-    const dvec3 after = share_of_light(*bound.surface, now.lights[l], surface_point(now, point));
+    const dvec3 before = share_of_light(*bound.surface, then.lights[l], place.then);
+    const dvec3 after = share_of_light(*bound.surface, now.lights[l], place.now);
     const double change = glm::length(after - multiplier * before);
     if (change > most) most = change, worst = static_cast<int>(l);
   }
   return worst;
 }
 
-dvec2 place_of(const LayerState& state, int point) {
-  const layers::dvec4& clip = state.clip_points[point];
+dvec2 place_of(const LayerState& state, const dvec3& position) {
+  const layers::dvec4 clip =
+      layers::clip_from_world(state.camera, state.view.display_px) * layers::dvec4(position, 1);
   if (clip.w > state.camera.near_m) return layers::screen_from_clip(clip, state.view.display_px);
   return (state.screen_bounds_px.lo + state.screen_bounds_px.hi) / 2.0;
 }
 
 void sample_points(const LayerState& then, const LayerState& now, const LayerBound& bound,
                    const PhotometricOptions& options, Photometric& result) {
-  const SeenColors seen = seen_colors(then, now);
+  const std::vector<LitPair> pairs = lit_pairs(then, now, bound);
+  const SeenColors seen = seen_colors(then, now, pairs);
   const warp::ColorFit fitted = fit(seen, options);
   result.multiplier = fitted.multiplier;
   if (!(fitted.max > 0)) return;
   result.color = fitted.max;
   result.point = seen.point[fitted.worst_point];
-  result.where_px = place_of(now, result.point);
-  result.color_light.index = light_that_changed(then, now, bound, result.point, fitted.multiplier);
+  const int beyond = result.point - static_cast<int>(now.point_colors.size());
+  const LitPair worst = beyond >= 0 ? pairs[beyond] : pair_at(then, now, result.point);
+  result.where_px = place_of(now, worst.now.position);
+  result.color_light.index = light_that_changed(then, now, bound, worst, fitted.multiplier);
 }
 
 // ---- light source ----

@@ -22,6 +22,12 @@
 /// multiplier stays 1 and F says what is missing; so a sprite is best drawn as of the brightest instant of a
 /// run, which is what the policies that look ahead find.
 ///
+/// The points are the characteristic points and, where light can fall between them, places on the surface
+/// itself: material points, outlines of cones, feet of point lights and highlights as they were and as they are
+/// (fiducials/lit_places.h). A spot that crosses a floor and lights none of its corners is found so. On a body
+/// that is not flat the outlines lie on its polyhedron, and material points stand for what is between them: an
+/// estimate there.
+///
 /// Points whose normal faces away from the eye in both states are not seen and do not count, unless that is
 /// so for all of them (the eye is inside the polyhedron). The light source form knows nothing of a light that
 /// changes its colour; the point-sampled form does.

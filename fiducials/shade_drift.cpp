@@ -24,6 +24,9 @@ constexpr bool kAnyTrace = layers::is_built(layers::Effect::ShadowMap) ||
                            layers::is_built(layers::Effect::SpecularLayer) ||
                            layers::is_built(layers::Effect::ReflectionMap);
 
+/// How far beyond the display a path is followed, as the points of the fit are at least.
+constexpr double kBeyond_px = 1;
+
 bool exists(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
 /// Diagonal of that part of the receiver's bounds that is on the display.
@@ -40,7 +43,7 @@ class Projector {
       : now_(now),
         clip_from_receiver_(layers::clip_from_world(now.camera, now.view.display_px) *
                             now.world_from_receiver),
-        view_(layers::view_half_spaces(now.camera.near_m, now.view.clip_margin, 0)) {}
+        view_(layers::view_half_spaces(now.camera.near_m, kBeyond_px / dvec2(now.view.display_px), 0)) {}
 
   struct Path {
     double px = 0;

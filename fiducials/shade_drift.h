@@ -8,7 +8,7 @@
 /// what the warp does not explain is the path from ŝᵢ to sᵢ on the surface as it lies now:
 ///
 ///   M = max over the traces that are on the receiver then or now, and over i, of
-///       length on the display of the segment from P(R ŝᵢ) to P(R sᵢ), clipped to the enlarged view     [px]
+///       length on the display of the segment from P(R ŝᵢ) to P(R sᵢ), clipped to the display     [px]
 ///
 /// with R the receiver's matrix and P the projection now. Best 0: at rest, and whenever light, eye, casters
 /// and receiver move together. A place that existed in one state only (a caster rose above the light) is

@@ -23,6 +23,8 @@ LayerPreferences strictest(LayerPreferences a, const LayerPreferences& b) {
   a.max_update_rate = std::max(a.max_update_rate, b.max_update_rate);
   a.share_of_expected_motion = std::max(a.share_of_expected_motion, b.share_of_expected_motion);
   a.motion_blur = std::min(a.motion_blur, b.motion_blur);
+  a.whole_extents = a.whole_extents && b.whole_extents;
+  if (a.warp != b.warp) a.warp.clear();
   return a;
 }
 

@@ -140,15 +140,15 @@ void clip_to_crossed(std::span<const HalfSpace> half_spaces, unsigned crossed, P
 
 }  // namespace
 
-ViewHalfSpaces view_half_spaces(double near_m, double clip_margin, int state) {
-  const double g = 1 + 2 * clip_margin;
+ViewHalfSpaces view_half_spaces(double near_m, dvec2 clip_margin, int state) {
+  const dvec2 g = dvec2(1) + 2.0 * clip_margin;
   // Two tolerances beyond the near plane: one is given back by the points that count as on the plane.
   const double nearest = near_m * (1 + 2 * kOnPlane);
   return {{{state, 0, 0, 1, -nearest},
-           {state, 1, 0, g, 0},
-           {state, -1, 0, g, 0},
-           {state, 0, 1, g, 0},
-           {state, 0, -1, g, 0}}};
+           {state, 1, 0, g.x, 0},
+           {state, -1, 0, g.x, 0},
+           {state, 0, 1, g.y, 0},
+           {state, 0, -1, g.y, 0}}};
 }
 
 unsigned outcode(const ViewHalfSpaces& view, const dvec4& clip) {

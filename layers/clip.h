@@ -40,8 +40,11 @@ using ViewHalfSpaces = std::array<HalfSpace, kViewHalfSpaces>;
 inline constexpr double kOnPlane = 1e-9;
 
 /// The half-spaces of a view, the near plane first. Points inside have w > near strictly. `near_m` > 0,
-/// `clip_margin` ≥ 0.
-ViewHalfSpaces view_half_spaces(double near_m, double clip_margin, int state);
+/// `clip_margin` ≥ 0, along x and y.
+ViewHalfSpaces view_half_spaces(double near_m, dvec2 clip_margin, int state);
+inline ViewHalfSpaces view_half_spaces(double near_m, double clip_margin, int state) {
+  return view_half_spaces(near_m, dvec2(clip_margin), state);
+}
 
 /// Bit i is set where the point is outside half-space i (also where it is not a number).
 unsigned outcode(const ViewHalfSpaces& view, const dvec4& clip);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -9,11 +10,45 @@
 namespace talisman::layers {
 namespace {
 
-ViewHalfSpaces half_spaces_of(const LayerState& state, int index) {
-  return view_half_spaces(state.camera.near_m, state.view.clip_margin, index);
+/// The two views of one correspondence.
+struct Views {
+  ViewHalfSpaces then, now;
+};
+
+/// The fastest motion per frame of the characteristic points that are on the display now, as far as that is a
+/// small part of the display.
+double motion_in_one_frame(const LayerState& then, const LayerState& now, int frames) {
+  constexpr double kMost = 0.25;  // of the display
+  const dvec2 size(now.view.display_px);
+  const auto display = view_half_spaces(now.camera.near_m, 0.0, 0);
+  double fastest = 0;
+  for (std::size_t i = 0; i < now.clip_points.size(); ++i) {
+    if (outcode(display, now.clip_points[i]) != 0 || !(then.clip_points[i].w > then.camera.near_m)) continue;
+    const dvec2 path = screen_from_clip(now.clip_points[i], now.view.display_px) -
+                       screen_from_clip(then.clip_points[i], then.view.display_px);
+    fastest = std::max(fastest, std::hypot(path.x, path.y));
+  }
+  return std::min(fastest / std::max(frames, 1), kMost * std::max(size.x, size.y));
 }
 
-bool is_wholly_in_view(const LayerState& state) { return state.in_view() && !state.clipped; }
+Views views_of(const LayerState& then, const LayerState& now, int frames) {
+  constexpr double kLeast_px = 1;
+  const dvec2 size(now.view.display_px);
+  const dvec2 margin_px(std::max(kLeast_px, motion_in_one_frame(then, now, frames)));
+  const double then_margin = std::max(kThenMargin, then.view.clip_margin);
+  return {view_half_spaces(then.camera.near_m, then_margin, 0),
+          view_half_spaces(now.camera.near_m, margin_px / size, 1)};
+}
+
+/// Nothing is cut off: all characteristic points are on the grown display, and were not far from it.
+bool is_wholly_in_view(const LayerState& then, const LayerState& now, const Views& views) {
+  const auto inside = [](const ViewHalfSpaces& view, const std::vector<dvec4>& points) {
+    return std::all_of(points.begin(), points.end(), [&](const dvec4& p) { return outcode(view, p) == 0; });
+  };
+  const auto is_unclipped = [](const LayerState& state) { return state.in_view() && !state.clipped; };
+  if (!is_unclipped(now) || !inside(views.now, now.clip_points)) return false;
+  return (is_unclipped(then) && then.view.clip_margin <= kThenMargin) || inside(views.then, then.clip_points);
+}
 
 void add(dvec2 then_px, dvec2 now_px, int point, Correspondences& matched) {
   if (!(std::isfinite(then_px.x + then_px.y) && std::isfinite(now_px.x + now_px.y))) return;
@@ -36,11 +71,10 @@ void reserve(std::size_t count, Correspondences& matched) {
   matched.point.reserve(count);
 }
 
-/// Where nothing is clipped every point has its place on the display already.
 void match_characteristic_points(const LayerState& then, const LayerState& now, Correspondences& matched) {
-  reserve(then.screen_points.size(), matched);
-  for (std::size_t i = 0; i < then.screen_points.size(); ++i)
-    add(then.screen_points[i], now.screen_points[i], static_cast<int>(i), matched);
+  reserve(now.clip_points.size(), matched);
+  for (std::size_t i = 0; i < now.clip_points.size(); ++i)
+    match(then.clip_points[i], now.clip_points[i], static_cast<int>(i), then, now, matched);
 }
 
 void match_all(const std::vector<MaterialPoint>& points, const LayerState& then, const LayerState& now,
@@ -49,40 +83,50 @@ void match_all(const std::vector<MaterialPoint>& points, const LayerState& then,
   for (const MaterialPoint& p : points) match(p.clip[0], p.clip[1], p.point, then, now, matched);
 }
 
-std::vector<MaterialPoint> in_both_views(const LayerState& then, const LayerState& now,
+/// The material points of what deforms, as far as they are in both views.
+void match_material_points(const LayerState& then, const LayerState& now, const Views& views,
+                           Correspondences& matched) {
+  if (then.material_clip.size() != now.material_clip.size()) return;  // one state was not finite
+  for (std::size_t i = 0; i < now.material_clip.size(); ++i)
+    if (outcode(views.then, then.material_clip[i]) == 0 && outcode(views.now, now.material_clip[i]) == 0)
+      match(then.material_clip[i], now.material_clip[i], static_cast<int>(now.world_points.size() + i), then,
+            now, matched);
+}
+
+std::vector<MaterialPoint> in_both_views(const LayerState& then, const LayerState& now, const Views& views,
                                          const Polyhedron& hull) {
   std::array<HalfSpace, 2 * kViewHalfSpaces> half_spaces;
-  const auto of_then = half_spaces_of(then, 0), of_now = half_spaces_of(now, 1);
   for (int i = 0; i < kViewHalfSpaces; ++i) {  // both near planes first: beyond them nothing is huge
-    half_spaces[2 * i] = of_then[i];
-    half_spaces[2 * i + 1] = of_now[i];
+    half_spaces[2 * i] = views.then[i];
+    half_spaces[2 * i + 1] = views.now[i];
   }
   return clip_surface(hull.triangles, then.clip_points, now.clip_points, half_spaces);
 }
 
-std::vector<MaterialPoint> in_either_view(const LayerState& then, const LayerState& now,
+std::vector<MaterialPoint> in_either_view(const LayerState& then, const LayerState& now, const Views& views,
                                           const Polyhedron& hull) {
-  auto points = clip_surface(hull.triangles, then.clip_points, now.clip_points, half_spaces_of(then, 0));
+  auto points = clip_surface(hull.triangles, then.clip_points, now.clip_points, views.then);
   // No point is in both views, so there is nothing to merge.
-  const auto more = clip_surface(hull.triangles, then.clip_points, now.clip_points, half_spaces_of(now, 1));
+  const auto more = clip_surface(hull.triangles, then.clip_points, now.clip_points, views.now);
   points.insert(points.end(), more.begin(), more.end());
   return points;
 }
 
 }  // namespace
 
-Correspondences correspond(const LayerState& then, const LayerState& now, const Polyhedron& hull) {
+Correspondences correspond(const LayerState& then, const LayerState& now, const Polyhedron& hull,
+                           int frames) {
   Correspondences matched;
   if (then.clip_points.empty() || now.clip_points.empty()) return matched;
   TALISMAN_CHECK_EQ(then.clip_points.size(), now.clip_points.size());
-  if (is_wholly_in_view(then) && is_wholly_in_view(now)) {
+  const Views views = views_of(then, now, frames);
+  if (is_wholly_in_view(then, now, views))
     match_characteristic_points(then, now, matched);
-    matched.overlap = !matched.point.empty();
-    return matched;
-  }
-  match_all(in_both_views(then, now, hull), then, now, matched);
+  else
+    match_all(in_both_views(then, now, views, hull), then, now, matched);
   matched.overlap = !matched.point.empty();
-  if (!matched.overlap) match_all(in_either_view(then, now, hull), then, now, matched);
+  if (!matched.overlap) match_all(in_either_view(then, now, views, hull), then, now, matched);
+  match_material_points(then, now, views, matched);
   return matched;
 }
 

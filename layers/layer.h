@@ -6,6 +6,7 @@
 /// A layer is a set of parts that are drawn into one sprite, together with the author's wishes for it. Layers
 /// are named by the author; the parts that a layer takes are named by globs over the parts' names.
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -29,15 +30,24 @@ struct LayerPreferences {
   double max_update_rate =
       1;  ///< renders per frame, (0, 1]: never re-rendered more often, after the first time
   double share_of_expected_motion = 1;  ///< scales the growth of extents by velocity × expected reuse; ≥ 0
-  /// Each part has its own characteristic polyhedron instead of one around the whole layer. For layers whose
-  /// parts lie far apart: one box around them all knows nothing of the parallax between them. Cost: fits in
-  /// proportion to the parts.
-  bool bound_each_part = false;
+  /// Each part has its own characteristic polyhedron (true), or one polyhedron is around the whole layer
+  /// (false). Without a value: one for all that moves as one, one for each of several that move against each
+  /// other. For layers whose parts lie far apart: one box around them all knows nothing of the parallax between
+  /// them. Cost: fits in proportion to the polyhedra.
+  std::optional<bool> bound_each_part{};
   /// Share of the frame interval during which the shutter is open; 0 … 1; 0: no motion blur. The sprite's
   /// samples along the layer's motion are taken farther apart the faster it moves (PlacementOptions): blurred
   /// along that direction, and cheaper to draw as it grows [LS97 3.4].
   double motion_blur = 0;
+  /// The sprite holds all of the layer that is within kWholeView_rad of the view axis, wherever the display
+  /// ends: for a backdrop that is drawn once and turned under the camera. It costs the texels of all that, at
+  /// a lower density where a side would exceed max_sprite_px; the density lost counts as magnification.
+  bool whole_extents = false;
+  std::string warp{};  ///< name of the curve that carries its sprite (warp/warp.h); empty: that of the run
 };
+
+/// How far from the view axis whole extents reach.
+inline constexpr double kWholeView_rad = 1.3962634015954636;  // 80°
 
 /// What a layer's sprite holds [LS97 2.3]. A geometry layer is a surface as it looks; the others are shade
 /// layers, one term of the shading of their base layer, scan-converted over the same surface and composited
@@ -102,6 +112,8 @@ struct HeldTerms {
   bool operator==(const HeldTerms&) const = default;
 };
 
+struct CastingTile;  // layers/casting.h
+
 struct Layer {
   int id = -1;  ///< index in the LayerSet, stable over the sequence
   std::string name;
@@ -119,7 +131,9 @@ struct Layer {
       factored;  ///< Geometry, and Light and Shadow of their base: the terms that are called for and in shade layers
   /// Of a surface that factors its shadows, and of its shade layers: how.
   std::optional<ShadowsAs> shadows_as{};
-  std::vector<int> casters;    ///< holds.shadows: ids of the geometry layers whose shadows may fall on it
+  std::vector<int> casters;  ///< holds.shadows: ids of the geometry layers whose shadows may fall on it
+  /// The tiles of its parts, where it casts shadows or receives them and does not deform; else null.
+  std::shared_ptr<const std::vector<CastingTile>> tiles;
   std::vector<int> reflected;  ///< holds.reflection: ids of the geometry layers that it mirrors
   /// Where that matters and is so: all of it (with a reflection: all that reflects) lies in one plane.
   std::optional<SurfacePlane> plane;

@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include <glm/geometric.hpp>
 
+#include "layers/animation.h"
 #include "layers/check.h"
 #include "layers/vectors.h"
 
@@ -319,24 +321,42 @@ Layer alone(const Scene& scene, int part) {
 
 int points_per_hull(BoundKind kind) { return kCorners * static_cast<int>(vertices_per_corner(kind).size()); }
 
-LayerBound bound_of_each_part(const Scene& scene, const Layer& layer, BoundKind kind) {
-  LayerBound bound;
-  bound.kind = kind;
-  bound.parts = layer.parts;
-  for (const int part : layer.parts) {
-    if (scene.meshes[scene.parts[part].mesh].positions.empty()) continue;
-    const int first = static_cast<int>(bound.bodies.size()) * points_per_hull(kind);
-    append_topology(kind, first, bound.hull);
-    bound.bodies.push_back(make_layer_bound(scene, alone(scene, part), kind));
+/// Parts that move as one are one body; each that deforms by a skin or shape of its own is another.
+std::vector<Layer> bodies_of(const Scene& scene, const Layer& layer) {
+  const std::vector<int> carriers = moving_carriers(scene);
+  std::map<std::array<int, 2>, std::size_t> body_of;  // by skin and carrier
+  std::vector<Layer> bodies;
+  for (const int index : layer.parts) {
+    const Part& part = scene.parts[index];
+    const bool is_rigid = !deforms(scene, part);
+    const std::array key = is_rigid        ? std::array{-1, part.node < 0 ? -1 : carriers[part.node]}
+                                  : part.skin < 0 ? std::array{-2, index}
+                                           : std::array{part.skin, -1};
+    const auto [it, is_new] = body_of.try_emplace(key, bodies.size());
+    if (is_new) {
+      bodies.push_back(alone(scene, index));
+      continue;
+    }
+    Layer& body = bodies[it->second];
+    body.parts.push_back(index);
+    if (is_rigid) body.rigid_node = lowest_common_node(scene, body.rigid_node, part.node);
   }
-  return bound;
+  return bodies;
 }
 
-}  // namespace
+/// What is to have a polyhedron of its own; one: the whole layer.
+std::vector<Layer> bounded_apart(const Scene& scene, const Layer& layer) {
+  const std::optional<bool>& each_part = layer.preferences.bound_each_part;
+  const bool moves_as_one = follows_rigid_node(scene, layer) || is_at_rest(scene, layer);
+  if (layer.parts.size() < 2 || (each_part ? !*each_part : moves_as_one)) return {layer};
+  if (!each_part) return bodies_of(scene, layer);
+  std::vector<Layer> parts;
+  for (const int part : layer.parts) parts.push_back(alone(scene, part));
+  return parts;
+}
 
-LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind) {
-  if (layer.preferences.bound_each_part && layer.parts.size() > 1)
-    return bound_of_each_part(scene, layer, kind);
+/// One polyhedron around all parts.
+LayerBound bound_of_whole(const Scene& scene, const Layer& layer, BoundKind kind, int material_points) {
   LayerBound bound;
   bound.kind = kind;
   bound.parts = layer.parts;
@@ -346,9 +366,37 @@ LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind ki
     bound.hull = bounding_polyhedron(resting_positions(scene, layer, bound.node), kind);
   } else {
     bound.axes_node = common_node(scene, layer);
+    bound.samples = spread_samples(scene, bound.parts, material_points, true);
   }
   if (bound.hull.triangles.empty()) append_topology(kind, 0, bound.hull);
   return bound;
+}
+
+bool has_vertices(const Scene& scene, const Layer& layer) {
+  return std::any_of(layer.parts.begin(), layer.parts.end(),
+                     [&](int part) { return !scene.meshes[scene.parts[part].mesh].positions.empty(); });
+}
+
+}  // namespace
+
+LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind, int material_points) {
+  const std::vector<Layer> apart = bounded_apart(scene, layer);
+  if (apart.size() == 1) return bound_of_whole(scene, layer, kind, material_points);
+  LayerBound bound;
+  bound.kind = kind;
+  bound.parts = layer.parts;
+  for (const Layer& body : apart) {
+    if (!has_vertices(scene, body)) continue;
+    append_topology(kind, static_cast<int>(bound.bodies.size()) * points_per_hull(kind), bound.hull);
+    bound.bodies.push_back(bound_of_whole(scene, body, kind, material_points));
+  }
+  return bound;
+}
+
+void add_light_samples(const Scene& scene, int material_points, LayerBound& bound) {
+  for (LayerBound& body : bound.bodies) add_light_samples(scene, material_points, body);
+  if (bound.bodies.empty() && bound.samples.empty())
+    bound.samples = spread_samples(scene, bound.parts, material_points, false);
 }
 
 int point_count(const LayerBound& bound) {

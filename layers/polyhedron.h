@@ -30,6 +30,7 @@
 
 #include "layers/layer.h"
 #include "layers/point_shading.h"
+#include "layers/surface_samples.h"
 
 namespace talisman::layers {
 
@@ -81,10 +82,15 @@ struct LayerBound {
   bool at_rest = false;    ///< nothing in the layer moves: `hull.points` are world points at every time
   Polyhedron hull;         ///< points are valid when fixed(); the triangles always are
   std::vector<int> parts;  ///< those it bounds, ascending
-  /// One bound per part where the layer asks for it (LayerPreferences::bound_each_part), one per member in an
-  /// aggregate (layers/aggregate.h); they may have bodies themselves. Then `hull` has the triangles of all of
+  /// One bound per part where the layer asks for it (LayerPreferences::bound_each_part), one per body where
+  /// its parts move against each other, one per member in an aggregate (layers/aggregate.h); they may have
+  /// bodies themselves. Then `hull` has the triangles of all of
   /// them, one after the other, and the points are theirs in the same order.
   std::vector<LayerBound> bodies;
+  /// Material points of this body (not of `bodies`) beside the points of the hull: where it is not fixed, for
+  /// its motion and its light; where it is, for its light alone and only if that is followed. What they say is
+  /// an estimate (layers/surface_samples.h).
+  std::vector<SurfaceSample> samples;
 
   /// Set where the layer's photometry is to be followed: then the characteristic points carry normals and
   /// colours (layers/state.h). The author of the bound decides; see layers/light_change.h.
@@ -96,10 +102,22 @@ struct LayerBound {
 };
 
 /// One polyhedron for the whole, or the polyhedra of the parts together: the two ways to group bodies of
-/// [LS97 3.1]. The one is fixed in `layer.rigid_node` where the layer has one, fixed in the world where
+/// [LS97 3.1]. Parts that move against each other have one polyhedron for each that moves by itself, unless the
+/// author asks for something else; what deforms has `material_points` samples beside its polyhedron. The one is fixed in `layer.rigid_node` where the layer has one, fixed in the world where
 /// nothing in it moves. Otherwise the points are recomputed, along the axes of the lowest node above all its
 /// parts and joints, so that the polyhedron turns with a layer that turns as a whole.
-LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind);
+LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind,
+                            int material_points = kDefaultMaterialPoints);
+
+/// Samples for the light of the bodies that have none yet. Cost: as spread_samples.
+void add_light_samples(const Scene& scene, int material_points, LayerBound& bound);
+
+/// Calls visit(body) for the bodies of a bound, or for itself where it has none, in their order.
+template <typename Visit>
+void for_each_body(const LayerBound& bound, const Visit& visit) {
+  if (bound.bodies.empty()) return visit(bound);
+  for (const LayerBound& body : bound.bodies) for_each_body(body, visit);
+}
 
 /// How many characteristic points the bound has wherever it has any.
 int point_count(const LayerBound& bound);

@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -280,6 +281,9 @@ std::vector<dvec3> morphed_normals(const SceneFrame& frame, const Part& part);
 /// skinning where the part has a skin: p' = Σ wₖ Mₖ p / Σ wₖ; a vertex whose weights are all 0 follows the first joint it names.
 /// Cost: O(vertices).
 std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part);
+/// The same of these vertices alone, in their order. Cost: O(vertices asked for + joints).
+std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part,
+                                   std::span<const std::uint32_t> vertices);
 
 /// World-from-vertex matrix of each joint of a skinned part: world_from_joint · joint_from_mesh.
 std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part);

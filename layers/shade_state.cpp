@@ -11,6 +11,7 @@
 
 #include "layers/animation.h"
 #include "layers/built_effects.h"
+#include "layers/casting.h"
 #include "layers/shading.h"
 
 namespace talisman::layers {
@@ -128,8 +129,18 @@ class Receiver {
       before_surface = before_surface || (exists(place) && beyond < (plane_ ? 0 : radius_));
       trace.places.push_back(place);
     }
-    trace.on_receiver = before_surface;
+    trace.on_receiver = before_surface && may_fall(light, set_.layers[caster]);
     return trace;
+  }
+
+  /// Aggregates and what deforms have no tiles: their hulls stand for them.
+  bool may_fall(int light, const Layer& caster) const {
+    const auto body = [this](const Layer& layer) {
+      const std::span<const CastingTile> tiles =
+          layer.tiles ? std::span<const CastingTile>(*layer.tiles) : std::span<const CastingTile>();
+      return CastingBody{tiles, states_[layer.id].world_points};
+    };
+    return may_cast(frame_, frame_.lights[light], body(caster), body(layer_));
   }
 
   ShadeTrace highlight(int light) const {

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "layers/casting.h"
+
 namespace talisman::layers {
 
 namespace {
@@ -91,13 +93,53 @@ HeldTerms called_terms(const Scene& scene, const Layer& layer) {
   return terms;
 }
 
+std::shared_ptr<const std::vector<CastingTile>> tiles_of(const Scene& scene, const Layer& layer, bool casts) {
+  if (!casts && !any_part(scene, layer, is_lit)) return nullptr;
+  std::vector<CastingTile> tiles = casting_tiles(scene, layer.parts);
+  if (tiles.empty()) return nullptr;
+  return std::make_shared<const std::vector<CastingTile>>(std::move(tiles));
+}
+
+bool rests(const Scene& scene, const Layer& layer) {
+  return std::none_of(layer.parts.begin(), layer.parts.end(), [&](int part) {
+    return deforms(scene, scene.parts[part]) || is_animated(scene, scene.parts[part].node);
+  });
+}
+
+bool rests(const Scene& scene, const Light& light) {
+  return light.node < 0 || !is_animated(scene, light.node);
+}
+
+/// All tiles of a layer as one body at `frame`.
+std::vector<dvec3> corners_of(const SceneFrame& frame, const Layer& layer) {
+  std::vector<dvec3> points;
+  for (const CastingTile& tile : *layer.tiles)
+    for (const dvec3& p : tile.corners)
+      points.push_back(tile.node < 0 ? p : dvec3(frame.world_from_node[tile.node] * dvec4(p, 1)));
+  return points;
+}
+
+/// Neither of them moves, nor any light that casts, and none of these throws a shadow of the one on the other
+/// (layers/casting.h). Where something moves that is asked anew in each frame (layers/shade_state.h).
+bool never_casts(const Scene& scene, const Layer& caster, const Layer& receiver) {
+  if (!caster.tiles || !receiver.tiles || !rests(scene, caster) || !rests(scene, receiver)) return false;
+  const SceneFrame frame = scene.at(0);
+  const std::vector<dvec3> from = corners_of(frame, caster), onto = corners_of(frame, receiver);
+  const std::vector<int> lights = casting_lights(scene);
+  return std::all_of(lights.begin(), lights.end(), [&](int light) {
+    return rests(scene, scene.lights[light]) &&
+           !may_cast(frame, frame.lights[light], {*caster.tiles, from}, {*receiver.tiles, onto});
+  });
+}
+
 /// The geometry layers that may darken `receiver`. What is flat never shadows itself.
 std::vector<int> casters_for(const Scene& scene, const LayerSet& set, const std::vector<bool>& casts,
                              const Layer& receiver) {
   const bool flat = common_plane(scene, receiver.parts, receiver.rigid_node).has_value();
   std::vector<int> casters;
   for (const Layer& layer : set.layers)
-    if (casts[layer.id] && !(flat && layer.id == receiver.id)) casters.push_back(layer.id);
+    if (casts[layer.id] && !(flat && layer.id == receiver.id) && !never_casts(scene, layer, receiver))
+      casters.push_back(layer.id);
   return casters;
 }
 
@@ -133,6 +175,7 @@ Layer shade_layer(const Layer& base, LayerKind kind, const std::string& name,
   layer.preferences.bound_each_part = base.preferences.bound_each_part;
   layer.polygons = base.polygons;
   layer.rigid_node = base.rigid_node;
+  layer.tiles = base.tiles;
   layer.base = base.id;
   layer.plane = base.plane;
   layer.fade = base.fade;
@@ -361,6 +404,8 @@ void add_shade_layers(const Scene& scene, std::span<const LayerSpec> specs, Laye
   std::vector<bool> casts(set.layers.size(), false);
   for (std::size_t i = 0; i < set.layers.size(); ++i)
     casts[i] = specs[i].casts_shadows && any_part(scene, set.layers[i], casts_shadow);
+  if (!casting_lights(scene).empty())
+    for (Layer& layer : set.layers) layer.tiles = tiles_of(scene, layer, casts[layer.id]);
   for (Layer& layer : set.layers) describe_geometry(scene, casts, set, layer);
   std::vector<Layer> all;
   for (const Layer& geometry : set.layers) {

@@ -102,4 +102,23 @@ std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part) {
   return world;
 }
 
+std::vector<dvec3> world_positions(const SceneFrame& frame, const Part& part,
+                                   std::span<const std::uint32_t> vertices) {
+  const Mesh& mesh = frame.scene->meshes.at(part.mesh);
+  const dmat4 world_from_node = part.node < 0 ? dmat4(1) : frame.world_from_node.at(part.node);
+  const std::vector<double> weights = is_morphed(mesh) ? morph_weights(frame, part) : std::vector<double>();
+  const std::vector<dmat4> palette = joint_palette(frame, part);
+  std::vector<dvec3> world;
+  world.reserve(vertices.size());
+  for (const std::uint32_t vertex : vertices) {
+    dvec3 p(mesh.positions[vertex]);
+    for (std::size_t k = 0; k < weights.size(); ++k)
+      if (weights[k] != 0 && !mesh.morphs[k].positions.empty())
+        p += weights[k] * dvec3(mesh.morphs[k].positions[vertex]);
+    world.push_back(part.skin < 0 ? dvec3(world_from_node * dvec4(p, 1))
+                                  : skinned_position(mesh, p, vertex, palette));
+  }
+  return world;
+}
+
 }  // namespace talisman::layers

@@ -228,15 +228,17 @@ SpritePlacement place_sprite(const LayerState& now, const LayerState& soon, cons
   const int max_px = std::max(options.max_sprite_px, 8);
   Lattice lattice = choose_lattice(on_display, options);
   RectD shown = lattice.bounds(on_display);
-  const double reduction = reduction_within(shown, max_px);
+  const double reduction = reduction_within(extents.whole ? lattice.bounds(outline) : shown, max_px);
   if (reduction < 1) {
     lattice.density *= reduction;
     shown = lattice.bounds(on_display);
   }
 
-  const RectD grown = grown_display(now, soon, hull, extents);
+  const RectD grown = extents.whole ? display : grown_display(now, soon, hull, extents);
   const RectD own = lattice.bounds(now.clipped ? continued_beyond_view(outline, now.view) : outline);
-  const RectD drawn = grown == display ? shown : lattice.bounds(clip_to_rect(outline, grown));
+  const RectD drawn = extents.whole      ? lattice.bounds(outline)
+                      : grown == display ? shown
+                                         : lattice.bounds(clip_to_rect(outline, grown));
   const auto along = [&](int axis) {
     return texels_along({own.lo[axis], own.hi[axis]}, {shown.lo[axis], shown.hi[axis]},
                         {drawn.lo[axis], drawn.hi[axis]}, lattice.is_flush(), max_px);
@@ -247,6 +249,7 @@ SpritePlacement place_sprite(const LayerState& now, const LayerState& soon, cons
   placement.clipped = {x.cut_lo, x.cut_hi, y.cut_lo, y.cut_hi};
   placement.axis_aligned = lattice.axis_aligned();
   placement.resolution_reduced = reduction < 1;
+  placement.density_kept = reduction;
   return placement;
 }
 

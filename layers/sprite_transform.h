@@ -33,6 +33,7 @@ struct ExtentOptions {
                                      ///< sprites live longer
   double max_growth = 0.25;  ///< at most this share of the display's larger side, per side; 0 … 1; what
                              ///< exceeds View::clip_margin has no effect
+  bool whole = false;        ///< all of the clipped view instead (LayerPreferences::whole_extents)
 };
 
 /// Values outside the ranges count as the nearest end, NaN as the default.
@@ -63,6 +64,7 @@ struct SpritePlacement {
   ClippedSides clipped;
   bool axis_aligned = true;
   bool resolution_reduced = false;  ///< max_sprite_px forced a lower density than asked for
+  double density_kept = 1;          ///< share of the density asked for, (0, 1]: less where it was reduced
   bool empty() const { return size_px.x <= 0 || size_px.y <= 0; }
   bool operator==(const SpritePlacement&) const = default;
 };

@@ -60,6 +60,8 @@ void forget(LayerState& state) {
   state.world_from_body.clear();
   state.world_normals.clear();
   state.point_colors.clear();
+  state.material_clip.clear();
+  state.lit_places.clear();
   state.world_from_influence.clear();
   state.traces.clear();
   state.world_from_receiver = dmat4(1.0);
@@ -78,6 +80,13 @@ void append_morphs(const SceneFrame& frame, std::span<const int> parts, std::vec
       matrices.back()[static_cast<int>(k % 16 / 4)][static_cast<int>(k % 4)] = weights[k];
     }
   }
+}
+
+/// The margin of a view that reaches kWholeView_rad to all sides.
+double whole_margin(const CameraState& camera, const View& view) {
+  const double aspect = std::max(view.display_px.x, 1) / static_cast<double>(std::max(view.display_px.y, 1));
+  const double smaller = std::tan(camera.fov_y_rad / 2) * std::min(1.0, aspect);
+  return std::max(view.clip_margin, (std::tan(kWholeView_rad) / smaller - 1) / 2);
 }
 
 bool overlaps_display(const RectD& bounds, ivec2 display_px) {
@@ -111,6 +120,7 @@ FrameCapture::FrameCapture(const SceneFrame& frame, const View& view)
       view_(view),
       clip_from_world_(clip_from_world(frame.camera, view.display_px)),
       half_spaces_(view_half_spaces(frame.camera.near_m, view.clip_margin, 0)),
+      whole_margin_(whole_margin(frame.camera, view)),
       shows_anything_(can_be_seen(frame.camera, view)) {}
 
 void FrameCapture::capture_points(const LayerBound& bound, LayerState& state) const {
@@ -120,6 +130,21 @@ void FrameCapture::capture_points(const LayerBound& bound, LayerState& state) co
   if (std::all_of(state.clip_points.begin(), state.clip_points.end(), is_finite)) return;
   state.world_points.clear();
   state.clip_points.clear();
+}
+
+/// Material points: for the motion of bodies that deform, and for the light of all where that is followed.
+void FrameCapture::capture_samples(const LayerBound& bound, LayerState& state) const {
+  const bool shaded = is_built(Effect::ColorWarp) && bound.surface;
+  std::vector<SurfacePlace> places;
+  for_each_body(bound, [&](const LayerBound& body) {
+    if (body.samples.empty() || (body.fixed() && !shaded)) return;
+    places.clear();
+    append_sample_places(frame_, body.samples, places);
+    for (const SurfacePlace& place : places) {
+      if (!body.fixed()) state.material_clip.push_back(clip_from_world_ * dvec4(place.position, 1));
+      if (shaded) state.lit_places.push_back({place, {}});
+    }
+  });
 }
 
 /// Normals and colours of the characteristic points, where the bound asks for them.
@@ -135,12 +160,15 @@ void FrameCapture::capture_shading(const LayerBound& bound, LayerState& state) c
   for (std::size_t i = 0; i < state.world_points.size(); ++i)
     state.point_colors.push_back(
         shaded_color(*bound.surface, state.lights, {state.world_points[i], state.world_normals[i], eye}));
+  for (LitPlace& place : state.lit_places)
+    place.color = shaded_color(*bound.surface, state.lights, {place.at.position, place.at.normal, eye});
 }
 
-void FrameCapture::capture_bounds(const Polyhedron& hull, LayerState& state) const {
+void FrameCapture::capture_bounds(const Polyhedron& hull, const ViewHalfSpaces& half_spaces,
+                                  LayerState& state) const {
   unsigned any = 0, all = ~0u;
   for (const dvec4& clip : state.clip_points) {
-    const unsigned code = outcode(half_spaces_, clip);
+    const unsigned code = outcode(half_spaces, clip);
     any |= code;
     all &= code;
   }
@@ -151,7 +179,7 @@ void FrameCapture::capture_bounds(const Polyhedron& hull, LayerState& state) con
     return;
   }
   for (const MaterialPoint& p :
-       clip_surface(hull.triangles, state.clip_points, state.clip_points, half_spaces_))
+       clip_surface(hull.triangles, state.clip_points, state.clip_points, half_spaces))
     include_visible(p.clip[0], state);
   state.clipped = state.in_view();
   if (state.clipped && contains_nearest_point(state, hull)) state.nearest_w_m = state.camera.near_m;
@@ -167,8 +195,13 @@ void FrameCapture::capture(const Layer& layer, const LayerBound& bound, LayerSta
   const bool any_light = is_built(Effect::Lighting) && !frame_.lights.empty();
   if (any_light && any_part(*frame_.scene, layer, is_lit)) state.lights = lights_on(frame_, layer);
   capture_points(bound, state);
+  if (!state.world_points.empty()) capture_samples(bound, state);
   capture_shading(bound, state);
-  if (!state.clip_points.empty()) capture_bounds(bound.hull, state);
+  if (layer.preferences.whole_extents) state.view.clip_margin = whole_margin_;
+  const bool whole = state.view.clip_margin != view_.clip_margin;
+  if (!state.clip_points.empty())
+    capture_bounds(bound.hull,
+                   whole ? view_half_spaces(frame_.camera.near_m, whole_margin_, 0) : half_spaces_, state);
   state.touches_display = overlaps_display(state.screen_bounds_px, view_.display_px);
 }
 

@@ -7,16 +7,19 @@
 /// *render*, never the last frame. `correspond(then, now)` gives the matched screen positions of material
 /// points from which a warp is fitted.
 ///
-/// Which points [LS97 3.1, Fig. 13]. Where the whole polyhedron is in the enlarged view in both states: its
-/// vertices, the characteristic points. Otherwise the vertices of that part of the polyhedron's surface that
-/// is in the enlarged view *in both states*: its triangles are clipped by the five half-spaces of `then` and
-/// the five of `now` (layers/clip.h), and every vertex that results (kept vertex, crossing of an edge, edge
-/// of a view that pierces a triangle) is one material point, evaluated in both states. Why both: what was out
-/// of the enlarged view then is not in the old sprite, and what is out of it now is not on the display, so an
-/// error there is no error; yet such a point may lie thousands of pixels away, and a single one would govern
-/// the fit. In this way every point lies within the enlarged display in both states, and at rest the points
-/// are those of either view alone. Content that was not in the old sprite is the business of the visibility
-/// fiducial, not of the fit.
+/// Which points [LS97 3.1, Fig. 13]. An error that nobody sees is no error: what is judged is the display now,
+/// grown on each side by the layer's motion in one frame (at least one pixel). Where the whole polyhedron is
+/// on it, and was not far outside the display then: its vertices, the characteristic points. Otherwise the
+/// vertices of that part of the polyhedron's surface that is on the grown display now and was within
+/// kThenMargin displays of it then: its triangles are clipped by the five half-spaces of each (layers/clip.h),
+/// and every vertex that results (kept vertex, crossing of an edge, edge of a view that pierces a triangle) is
+/// one material point, evaluated in both states. How far sprites reach (View::clip_margin, extents) takes no
+/// part, so that no error rises with larger extents. Content that was not in the old sprite is the business
+/// of the visibility fiducial, not of the fit.
+///
+/// To these come the material points of what deforms (layers/surface_samples.h), as far as they are in
+/// both views: the vertices of its polyhedron are those of its bounds, which may stand still
+/// while it moves. A body that deforms is judged by an estimate, then; a rigid one has none of them.
 ///
 /// Where no part is in both views there is nothing to fit. Then `overlap` is false, and the points are those
 /// that are in view in either state, however far away they are in the other: the error they give is large,
@@ -34,9 +37,9 @@ namespace talisman::layers {
 /// The display as the decision side sees it.
 struct View {
   ivec2 display_px{1024, 1024};
-  /// The view to which polyhedra are clipped is larger by this share of the display on each side. Range 0 …
-  /// 1; more keeps sprites longer and makes the error bound looser. Not less than ExtentOptions::max_growth,
-  /// or sprites reach beyond the points of their fit.
+  /// The view to which polyhedra are clipped, and beyond which no sprite reaches, is larger by this share of
+  /// the display on each side. Range 0 … 1 (more in the states of layers with whole extents); more keeps
+  /// sprites longer.
   double clip_margin = 0.25;
   bool operator==(const View&) const = default;
 };
@@ -62,6 +65,12 @@ struct ShadeTrace {
   std::vector<dvec3> places;  ///< NaN where there is none
 };
 
+/// A material point whose light is followed.
+struct LitPlace {
+  SurfacePlace at;       ///< world
+  dvec3 color{0, 0, 0};  ///< shaded, linear light 0 … 1
+};
+
 struct LayerState {
   int layer = -1;
   double time_s = 0;
@@ -79,6 +88,8 @@ struct LayerState {
   std::vector<dmat4> world_from_body;
   std::vector<dvec3> world_normals;  ///< of the characteristic points; empty without LayerBound::surface
   std::vector<dvec3> point_colors;   ///< likewise: the shaded characteristic points, linear light 0 … 1
+  std::vector<dvec4> material_clip;  ///< material points of bodies that deform, in clip space
+  std::vector<LitPlace> lit_places;  ///< material points of all bodies; empty without LayerBound::surface
   RectD screen_bounds_px;            ///< of the polyhedron clipped to the enlarged view; empty: out of view
   bool touches_display = false;      ///< screen_bounds_px overlaps the display itself
   bool clipped = false;              ///< part of the polyhedron is in the enlarged view, and part is not
@@ -108,13 +119,15 @@ class FrameCapture {
 
  private:
   void capture_points(const LayerBound& bound, LayerState& state) const;
+  void capture_samples(const LayerBound& bound, LayerState& state) const;
   void capture_shading(const LayerBound& bound, LayerState& state) const;
-  void capture_bounds(const Polyhedron& hull, LayerState& state) const;
+  void capture_bounds(const Polyhedron& hull, const ViewHalfSpaces& half_spaces, LayerState& state) const;
 
   const SceneFrame& frame_;
   View view_;
   dmat4 clip_from_world_;
   ViewHalfSpaces half_spaces_;
+  double whole_margin_;  ///< of the view of layers with whole extents
   bool shows_anything_;  ///< camera and display are such that something can be in view
 };
 
@@ -139,14 +152,21 @@ struct Correspondences {
   static constexpr std::size_t kRoom = 24;
   InlineVector<dvec2, kRoom> then_px;
   InlineVector<dvec2, kRoom> now_px;
-  InlineVector<int, kRoom> point;  ///< index of the characteristic point, or -1 for a point made by clipping
-  bool overlap = false;  ///< some part of the polyhedron is in the enlarged view in both states; false:
+  InlineVector<int, kRoom>
+      point;             ///< index of the characteristic point, -1 for a point made by clipping; the
+                         ///< material points are counted behind the characteristic ones
+  bool overlap = false;  ///< some part of the polyhedron is in both views; false:
                          ///< nothing of what the old sprite shows is in view now, and no warp of it can serve
 };
 
-/// The order is that of the polyhedron's points or triangles, the same for every run. Cost: O(characteristic
-/// points) if neither state is clipped; else O(hull triangles · 10).
-Correspondences correspond(const LayerState& then, const LayerState& now, const Polyhedron& hull);
+/// How far outside the display then, in displays, a point may have been that is matched now: as far as extents
+/// may reach.
+inline constexpr double kThenMargin = 1;
+
+/// `frames` ≥ 0 lie between the states. The order is that of the polyhedron's points or triangles, the same
+/// for every run. Cost: O(characteristic points) if all are on the display; else O(hull triangles · 10).
+Correspondences correspond(const LayerState& then, const LayerState& now, const Polyhedron& hull,
+                           int frames = 1);
 
 /// World bounds of the characteristic points, for sorting.
 WorldBounds bounds_of(std::span<const dvec3> points);

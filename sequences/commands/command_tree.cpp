@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "sequences/commands/audit.h"
 #include "sequences/commands/cache_options.h"
 #include "sequences/commands/option_group.h"
 #include "sequences/commands/render.h"
@@ -31,7 +32,7 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_exports();
   add_warps();
   add_accuracy();
-  for (const char* command : {"render", "plan", "inspect", "warps", "accuracy"})
+  for (const char* command : {"render", "plan", "audit", "inspect", "warps", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
 }
 
@@ -44,6 +45,12 @@ void CommandTree::add_runs(const std::atomic<bool>& stop) {
   CLI::App* plan = app_.add_subcommand("plan", "the same decisions and costs, without pixels");
   add_run_options(*plan, line_);
   plan->callback([this, &stop] { exit_code_ = run_sequence(line_, true, stop, std::cout); });
+
+  CLI::App* audit =
+      app_.add_subcommand("audit", "were the fiducials right? Reused sprites are drawn fresh beside them");
+  add_run_options(*audit, line_);
+  add_audit_options(*audit, line_);
+  audit->callback([this, &stop] { exit_code_ = run_audit(line_, stop, std::cout); });
 }
 
 void CommandTree::add_inspect() {

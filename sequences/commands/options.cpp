@@ -140,6 +140,10 @@ T chosen(const char* option, const std::string& text, const Words<T, N>& words, 
 /// How layers are bounded, ordered and put together.
 void apply_order(const CommandLine& line, const Sequence& sequence, Settings& settings) {
   settings.bound = chosen("--bound", line.bound, kBoundWords, sequence.bound);
+  settings.material_points = line.material_points.value_or(sequence.material_points);
+  if (settings.material_points < 0 || settings.material_points > layers::kMostMaterialPoints)
+    throw InputError("--material-points is " + std::to_string(settings.material_points) +
+                     ", must be from 0 to " + std::to_string(layers::kMostMaterialPoints));
   settings.explicit_order = sequence.explicit_order;
   settings.cycles = chosen("--cycles", line.cycles, kCyclesWords, sequence.cycles);
   settings.compositor = chosen("--compositor", line.compositor, kCompositorWords, sequence.compositor);
@@ -166,6 +170,7 @@ Settings settings_of(const CommandLine& line, const Sequence& sequence) {
   Settings settings;
   settings.regulator = sequence.regulator;
   apply_regulator(line, settings.regulator);
+  settings.layers_own_warps = line.warp.empty();
   settings.curve = curve_from(line.warp.empty() ? sequence.warp : line.warp);
   settings.view.display_px = line.size.empty() ? sequence.display_px : display_from(line.size);
   if (sequence.clip_margin) settings.view.clip_margin = *sequence.clip_margin;
@@ -180,7 +185,8 @@ Settings settings_of(const CommandLine& line, const Sequence& sequence) {
 RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, bool plan_only) {
   RunOptions options;
   options.plan_only = plan_only;
-  options.out = !line.out.empty() ? line.out : "out/" + sequence.name + (plan_only ? "-plan" : "");
+  const char* suffix = plan_only ? "-plan" : line.audit_alone ? "-audit" : "";
+  options.out = !line.out.empty() ? line.out : "out/" + sequence.name + suffix;
   options.first_frame = 0;
   options.last_frame = sequence.frames - 1;
   if (!line.frames.empty())
@@ -192,6 +198,12 @@ RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, boo
   options.overlay = line.overlay;
   options.quality = line.quality;
   options.resume = line.resume;
+  options.audit_every = line.audit.value_or(0);
+  if (line.audit && *line.audit < 1)
+    throw InputError("--audit is " + std::to_string(*line.audit) +
+                     ", must be at least 1: every so many reuses");
+  if (options.audit_every > 0 && options.resume)
+    throw InputError("--audit looks at frames as they are drawn, must be given without --resume");
   if (options.video && options.format == FrameFormat::None)
     throw InputError("--video needs frames, but --format is none");
   if (options.overlay && options.format != FrameFormat::Png)

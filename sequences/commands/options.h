@@ -23,12 +23,14 @@ struct CommandLine {
   std::optional<double> geometric_px, cutoff_px, budget_ms, min_resolution, expected_reuse, resolution;
   std::optional<double> photometric, light_angle_deg, turned_px;
   std::string color_warp;  ///< "on", "off"
-  std::optional<int> hold, lookahead;
+  std::optional<int> hold, lookahead, material_points;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says
   std::optional<std::int64_t> budget_polygons, budget_pixels, budget_chunks;
   bool budget_gap = false;
   int threads = 0;  ///< 0: all cores
   bool video = false, separate = false, overlay = false, quality = false, resume = false;
+  std::optional<int> audit;  ///< every so many reuses; `talisman audit` writes no pictures of frames
+  bool audit_alone = false;
   bool strict = false;  ///< warnings of the content are errors
 };
 

@@ -71,6 +71,8 @@ void add_layers(CLI::App& command, CommandLine& line) {
               "warp curve: trn trni iso isoi so soi aff affi per peri per2 per2i pers pers2")
       .option("--color-warp", line.color_warp, "on, or off: as hardware without colour multipliers")
       .option("--bound", line.bound, kBoundMeaning)
+      .option("--material-points", line.material_points,
+              "samples of the surface of each body that deforms or whose light is followed, 0 to 1024")
       .option("--cycles", line.cycles,
               "layers that occlude each other in a cycle: merge (into one sprite) or keep (may be wrong)")
       .option("--compositor", line.compositor,
@@ -92,6 +94,9 @@ void add_pictures(CLI::App& command, CommandLine& line) {
       .flag("--overlay", line.overlay, "draw each sprite's outline, coloured by age")
       .flag("--quality", line.quality,
             "PSNR, SSIM and FLIP of each frame against reference and direct (slow)")
+      .option("--audit", line.audit,
+              "draw every N-th reuse of a layer fresh and compare: were the fiducials right? Sheets in "
+              "DIR/audit")
       .flag("--resume", line.resume, "continue a run that was stopped");
 }
 
@@ -107,6 +112,14 @@ void add_decisions(CLI::App& command, CommandLine& line) {
 void add_run_options(CLI::App& command, CommandLine& line) {
   add_run(command, line);
   add_decisions(command, line);
+}
+
+void add_audit_options(CLI::App& command, CommandLine& line) {
+  OptionGroup(command, "Audit")
+      .option("--every", line.audit, "one reuse of so many of each layer is drawn fresh (8)")
+      .option("--shading", line.shading, alternatives(kShadingWords))
+      .option("--resolution", line.resolution, "sprite texels per display pixel, each axis")
+      .option("--compression", line.compression, "keep sprites compressed: quality 1 to 100, 0: none");
 }
 
 void add_picture_options(CLI::App& command, CommandLine& line) { add_pictures(command, line); }

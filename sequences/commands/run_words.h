@@ -17,6 +17,7 @@ namespace talisman::sequences {
 /// The sequence and the options of `plan`, which `render` has too. `line` must live as long as `command`.
 void add_run_options(CLI::App& command, CommandLine& line);
 /// The further options of `render`.
+void add_audit_options(CLI::App& command, CommandLine& line);
 void add_picture_options(CLI::App& command, CommandLine& line);
 
 /// What `talisman plan SEQUENCE WORDS…` (or render) would be told. Throws InputError for a word that is unknown

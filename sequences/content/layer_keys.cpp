@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/layer_keys.h"
 
+#include "warp/warp.h"
+
 namespace talisman::sequences {
 
 namespace {
@@ -24,6 +26,12 @@ const Table<FiducialWeights>& importance_keys() {
   return table;
 }
 
+std::vector<std::string> curve_names() {
+  std::vector<std::string> names;
+  for (const warp::Curve curve : warp::kAllCurves) names.emplace_back(warp::name(curve));
+  return names;
+}
+
 const Table<LayerPreferences>& preference_keys() {
   using P = LayerPreferences;
   static const Table<P> table =
@@ -37,9 +45,16 @@ const Table<LayerPreferences>& preference_keys() {
           .key("share_of_expected_motion", &P::share_of_expected_motion, number(kNotNegative), "",
                "factor of the growth of extents")
           .key("bound_each_part", &P::bound_each_part, truth(), "",
-               "each part has its own characteristic polyhedron")
+               "each part has its own characteristic polyhedron, or all have one")
+          .otherwise("one for each that moves by itself")
           .key("motion_blur", &P::motion_blur, number({0, 1}), "",
                "share of the frame interval during which the shutter is open")
+          .key(
+              "extents", &P::whole_extents, choice<bool>({{"motion", false}, {"whole", true}}), "",
+              "the sprite reaches as far as the motion asks for, or holds all of the layer within 80° of the "
+              "view axis (at a lower density beyond `max_sprite_px`, which counts as magnification)")
+          .key("warp", &P::warp, one_of(curve_names()), "", "curve that carries the layer's sprite")
+          .otherwise("that of the sequence")
           .key("importance", &P::importance, map_of(importance_keys()), "", "weights of the fiducials");
   return table;
 }

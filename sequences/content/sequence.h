@@ -40,6 +40,7 @@ struct Sequence {
   Cycles cycles = Cycles::Merge;
   Compositor compositor = Compositor::Talisman;
   layers::BoundKind bound = layers::BoundKind::Box8;
+  int material_points = layers::kDefaultMaterialPoints;
   layers::ExtentOptions extents;
   layers::PlacementOptions placement;
   std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are

@@ -108,6 +108,9 @@ Table<SequenceFile> pipeline_keys() {
       .key("bound", setting(&Sequence::bound),
            choice<layers::BoundKind>({{"box8", Box8}, {"dop14", Dop14}, {"dop26", Dop26}}), "",
            "characteristic polyhedron")
+      .key("material_points", setting(&Sequence::material_points), whole(0, layers::kMostMaterialPoints), "",
+           "samples of the surface, beside the polyhedron, of each body that deforms or whose light is "
+           "followed: an estimate, better with more")
       .key("extents", setting(&Sequence::extents), map_of(extent_keys()), "",
            "how far sprites reach beyond what is seen now")
       .key("placement", setting(&Sequence::placement), map_of(placement_keys()), "",

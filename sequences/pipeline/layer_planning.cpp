@@ -30,6 +30,12 @@ bool is_blurred(const layers::LayerPreferences& preferences) {
   return layers::is_built(layers::Effect::MotionBlur) && preferences.motion_blur > 0;
 }
 
+/// The family that carries the layer's sprite.
+warp::Curve curve_of(const Pipeline& pipeline, const Layer& layer) {
+  if (layer.preferences.warp.empty() || !pipeline.settings.layers_own_warps) return pipeline.settings.curve;
+  return warp::curve_from_name(layer.preferences.warp).value_or(pipeline.settings.curve);
+}
+
 /// Texels per display pixel that the layer's author asks for.
 double own_resolution(const Layer& layer) {
   return layers::is_built(layers::Effect::LayerResolution) ? layer.preferences.resolution_scale : 1;
@@ -42,6 +48,7 @@ SpritePlacement place_layer(const Pipeline& pipeline, const LayerTable& layers, 
   const Layer& layer = layers[now.layer];
   layers::ExtentOptions extents = pipeline.settings.extents;
   extents.expected_reuse_frames = expected_reuse * layer.preferences.share_of_expected_motion;
+  extents.whole = layer.preferences.whole_extents && expected_reuse > 0;
   layers::PlacementOptions placement = pipeline.settings.placement;
   placement.resolution_scale *= own_resolution(layer) * resolution;
   if (is_blurred(layer.preferences)) apply_motion_blur(layers, now, placement);
@@ -233,15 +240,19 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
   assessment.in_view = assessment.has_sprite = true;
   assessment.frames_since_render = frames_since_render;
   assessment.identical = now.same_pixels(then);
-  const layers::Correspondences matched = layers::correspond(then, now, layers.bound(now.layer).hull);
+  const layers::Correspondences matched =
+      layers::correspond(then, now, layers.bound(now.layer).hull, frames_since_render);
   // An empty sprite holds nothing of what is in view now, wherever its points went.
   const bool shows_something = matched.overlap && !placement.empty();
   assessment.matched_points = shows_something ? static_cast<int>(matched.then_px.size()) : 0;
   if (assessment.identical)
     assessment.fitted.status = warp::FitStatus::Converged;  // the identity, without error
   else
-    assessment.fitted = warp::fit(then, now, matched, pipeline.settings.curve, pipeline.settings.fit);
+    assessment.fitted =
+        warp::fit(then, now, matched, curve_of(pipeline, layers[now.layer]), pipeline.settings.fit);
   assessment.fiducials = fiducials::assess(then, now, placement, matched, assessment.fitted);
+  if (assessment.preferences.whole_extents)
+    assessment.fiducials.sampling.magnification /= placement.density_kept;
   if (is_blurred(assessment.preferences)) judge_motion_blur(layers, then, now, assessment);
   assess_light_and_faces(pipeline, layers.bound(now.layer), then, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)

@@ -32,6 +32,7 @@ layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const lay
   if (!layers::is_built(layers::Effect::ColorWarp) || !change.possible()) return bound;
   bound.surface = layers::mean_surface(pipeline.scene, layer);
   if (is_light) bound.surface->constant = layers::dvec3(0.0);
+  layers::add_light_samples(pipeline.scene, pipeline.settings.material_points, bound);
   if (layer.factored.specular) bound.surface->specular = layers::dvec3(0.0);  // in a sprite of its own
   return bound;
 }

@@ -16,7 +16,8 @@ Pipeline make_pipeline(const layers::Scene& scene, layers::LayerSet layers, cons
   BoundTable bounds;
   for (const layers::Layer& layer : layers.layers)
     bounds.put(layer.id, following_light_and_faces(pipeline, layer,
-                                                   layers::make_layer_bound(scene, layer, settings.bound)));
+                                                   layers::make_layer_bound(scene, layer, settings.bound,
+                                                                            settings.material_points)));
   pipeline.authored = {std::move(layers), std::move(bounds)};
   return pipeline;
 }

@@ -26,9 +26,13 @@ namespace talisman::sequences {
 struct Settings {
   regulator::RegulatorOptions regulator;
   warp::Curve curve = warp::Curve::aff;
+  bool layers_own_warps = true;  ///< a layer's own curve (LayerPreferences::warp) precedes `curve`
   warp::FitOptions fit;
   layers::View view;
   layers::BoundKind bound = layers::BoundKind::Box8;
+  /// Samples of each body that deforms, or whose light is followed; 0 … 1024. More find what moves between
+  /// the others (layers/surface_samples.h) and cost time in every fit.
+  int material_points = layers::kDefaultMaterialPoints;
   layers::ExtentOptions extents;  ///< expected_reuse_frames is the default of policies that do not fix it
   layers::PlacementOptions placement;  ///< resolution_scale is multiplied with the layer's own
   chunker::RenderOptions render;

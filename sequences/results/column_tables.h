@@ -8,6 +8,7 @@
 ///   layers      an entry of `layers` in summary.json, layers.csv       run_columns.cpp
 ///   effects     an entry of `effects` in summary.json, effects.csv     run_columns.cpp
 ///   run         summary.json, the one row of run.csv                   run_columns.cpp
+///   audit       an entry of `audit` in summary.json                    audit_columns.cpp
 ///   timing      a line of timing.jsonl, a row of timing.csv            timing_columns.cpp
 
 #include "sequences/results/columns.h"
@@ -61,5 +62,6 @@ const ColumnTable<LayerRow>& layer_table();
 const ColumnTable<EffectRow>& effect_table();
 const ColumnTable<RunRow>& run_table();
 const ColumnTable<FrameLine>& timing_table();
+const ColumnTable<LayerAudit>& audit_table();
 
 }  // namespace talisman::sequences

@@ -44,7 +44,8 @@ std::map<std::string, std::string> all_tables() {
           {timing_table().name, markdown_of(timing_table())},
           {layer_table().name, markdown_of(layer_table())},
           {effect_table().name, markdown_of(effect_table())},
-          {run_table().name, markdown_of(run_table())}};
+          {run_table().name, markdown_of(run_table())},
+          {audit_table().name, markdown_of(audit_table())}};
 }
 
 }  // namespace

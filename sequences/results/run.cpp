@@ -16,6 +16,7 @@
 #include "sequences/pipeline/make_pipeline.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/pipeline/stopwatch.h"
+#include "sequences/results/audit.h"
 #include "sequences/results/run_folder.h"
 #include "sequences/results/run_identity.h"
 #include "sequences/results/separate_pictures.h"
@@ -73,6 +74,7 @@ class Runner {
     timing_->write(process_json());
     summary_ = start_summary(pipeline_, sequence.name);
     summary_.planned_only = options.plan_only;
+    if (options.audit_every > 0) auditor_.emplace(options.audit_every, options.out + "/audit");
     if (!options.plan_only)
       prepared_ = std::make_unique<chunker::PreparedScene>(*sequence.scene, settings.render);
   }
@@ -106,6 +108,7 @@ class Runner {
   int frames_complete() const { return complete_; }
 
   void finish(double fps) {
+    if (auditor_) summary_.audit = auditor_->finish();
     decisions_->finish();
     finish_frame_lines();
     timing_->write(total_timing_json(summary_));
@@ -137,6 +140,7 @@ class Runner {
     std::optional<FrameQuality> quality;
     if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
     if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
+    if (prepared_ && auditor_) auditor_->look(pipeline_, state_, report, *prepared_);
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     writer_.submit([this, shared, quality] { finish_frame(*shared, quality); });
   }
@@ -166,6 +170,7 @@ class Runner {
   std::map<int, FrameLine> kept_;
   std::unique_ptr<LineFile> decisions_, frames_, timing_;
   std::unique_ptr<chunker::PreparedScene> prepared_;
+  std::optional<Auditor> auditor_;
   Summary summary_;
   std::vector<FrameLine> lines_;   ///< the writer's alone until it has finished
   std::atomic<int> complete_ = 0;  ///< how many those are

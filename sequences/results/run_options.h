@@ -16,6 +16,7 @@ struct RunOptions {
   FrameFormat format = FrameFormat::Png;
   bool plan_only = false;  ///< decisions and costs without pixels
   bool separate = false;   ///< also each shade sprite alone, and the sums, in DIR/separate
+  int audit_every = 0;     ///< every so many reuses of a layer are drawn fresh and compared; 0: none
   bool video = false, overlay = false, quality = false, resume = false;
   ProgressKind progress = ProgressKind::Auto;
 };

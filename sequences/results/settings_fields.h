@@ -61,9 +61,10 @@ void fit(FitOptions& options, const Visit& visit) {
 
 template <typename Extents, typename Placement, typename Visit>
 void sprites(Extents& extents, Placement& placement, const Visit& visit) {
-  auto& [expected_reuse, max_growth] = extents;
+  auto& [expected_reuse, max_growth, whole] = extents;
   visit("expected_reuse_frames", expected_reuse);
   visit("max_growth", max_growth);
+  visit("whole_extents", whole);
   auto& [directions, rotation_gain, resolution_scale, motion, motion_density, max_sprite] = placement;
   visit("slab_directions", directions);
   visit("min_rotation_gain", rotation_gain);
@@ -93,15 +94,17 @@ void render(RenderOptions& options, const Visit& visit) {
 /// Settings; the values are references into it.
 template <typename AnySettings, typename Visit>
 void for_each_setting(AnySettings& settings, const Visit& visit) {
-  auto& [regulator, curve, fit, view, bound, extents, placement, render, compression, explicit_order, cycles,
-         compositor, fps, frames, budget_gap] = settings;
+  auto& [regulator, curve, own_warps, fit, view, bound, material_points, extents, placement, render,
+         compression, explicit_order, cycles, compositor, fps, frames, budget_gap] = settings;
   auto& [display, clip_margin] = view;
   visit("display_px", display);
   visit("clip_margin", clip_margin);
   settings_fields::regulator(regulator, visit);
   visit("warp", curve);
+  visit("layers_own_warps", own_warps);
   settings_fields::fit(fit, visit);
   visit("bound", bound);
+  visit("material_points", material_points);
   settings_fields::sprites(extents, placement, visit);
   settings_fields::render(render, visit);
   visit("compression", compression);

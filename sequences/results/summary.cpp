@@ -50,6 +50,13 @@ Json effects_json(const Summary& s) {
   return json;
 }
 
+Json audit_json(const Summary& s) {
+  static const RowJson<LayerAudit> writer(audit_table());
+  Json json = Json::array();
+  for (const LayerAudit& layer : s.audit) json.push_back(writer.write(layer));
+  return json;
+}
+
 }  // namespace
 
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
@@ -169,6 +176,7 @@ std::string json_of(const Summary& s) {
   Json json = writer.write(RunRow(s));
   json["layers"] = layers_json(s);
   json["effects"] = effects_json(s);
+  if (!s.audit.empty()) json["audit"] = audit_json(s);
   return json.dump(2) + "\n";
 }
 

@@ -11,6 +11,7 @@
 
 #include "layers/effects.h"
 #include "sequences/pipeline/pipeline.h"
+#include "sequences/results/audit.h"
 #include "sequences/results/frame_lines.h"
 
 namespace talisman::sequences {
@@ -54,6 +55,7 @@ struct Summary {
   /// One per entry of `effects`: renders of layers that use it; for shadow maps the maps drawn.
   std::vector<int> effect_passes;
   std::vector<FrameLine> frames;
+  std::vector<LayerAudit> audit;  ///< with --audit: the layers that were reused
 
   /// Over the author's layers; a render of an aggregate counts for each of its members.
   double mean_update_rate() const;

@@ -109,6 +109,7 @@ std::string table_of(const Summary& s) {
   if (run.compression) text += compression_row(run);
   text += time_row(s);
   if (run.quality) text += "\n" + quality_rows(run);
+  if (!s.audit.empty()) text += "\n" + table_of(s.audit);
   return text;
 }
 

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
 
+#include "fiducials/lit_places.h"
 #include "fiducials/turned_faces.h"
 #include "tests/layers/worlds.h"
 #include "warp/color.h"
@@ -69,6 +70,11 @@ double error_by_definition(const LitBox& box, const LayerState& then, const Laye
     };
     before.push_back(color(then));
     after.push_back(color(now));
+  }
+  // Which places the light draws is the subject of lit_places_test and light_places_test.
+  for (const LitPair& pair : lit_pairs(then, now, box.bound)) {
+    before.push_back(shaded_color(*box.bound.surface, then.lights, pair.then));
+    after.push_back(shaded_color(*box.bound.surface, now.lights, pair.now));
   }
   dvec3 best(0.0);
   for (int c = 0; c < 3; ++c) {
@@ -343,6 +349,39 @@ TEST(PhotometricOf, LengthsHaveNoUnit) {
     EXPECT_NEAR(figures(unit).color, figures(1).color, 1e-6);
     EXPECT_NEAR(figures(unit).light_angle_rad, figures(1).light_angle_rad, 1e-9);
   }
+}
+
+/// A floor of 12 m below the eye under a narrow spot that hangs 4 m above it.
+struct SpottedFloor : LitBox {
+  SpottedFloor() : LitBox({}, layers::BoundKind::Box8, {6, 0, 6}) {}
+  LayerState spot_at(double x) {
+    LightState spot = lamp({x, 1, -10}, {0.8f, 0.8f, 0.8f});
+    spot.kind = Light::Kind::Spot;
+    spot.inner_cone_rad = 0.17, spot.outer_cone_rad = 0.24;
+    return under({ambient(0.1f), spot}, moved_by({0, -3, -10}));
+  }
+};
+
+TEST(Photometric, SpotThatCrossesAFloorIsSeenWhereItWasAndWhereItIs) {
+  SpottedFloor floor;
+  const LayerState then = floor.spot_at(0);
+  const Photometric still = floor.compare(then, floor.spot_at(0));
+  EXPECT_EQ(still.color, 0);
+  // The corners see nothing of it. Where it was all of its light is gone: 0.5 · 0.8 in three channels.
+  const Photometric gone = floor.compare(then, floor.spot_at(3));
+  EXPECT_NEAR(gone.color, 0.4 * std::sqrt(3.0), 0.08);  // the multiplier gives a little more
+  EXPECT_EQ(gone.color_light.index, 1);
+  EXPECT_GE(gone.point, 8) << "no characteristic point";
+  // By 5 cm of a soft edge of 30 cm: its slope is at most 1.5 / 0.3 m.
+  const Photometric little = floor.compare(then, floor.spot_at(0.05));
+  EXPECT_GT(little.color, 0.4 * std::sqrt(3.0) * 0.05 / 0.3);
+  EXPECT_LT(little.color, 0.4 * std::sqrt(3.0) * 0.05 * 1.5 / 0.25);
+}
+
+TEST(Photometric, SpotBesideTheDisplayDoesNotCount) {
+  SpottedFloor floor;
+  floor.bound.hull = layers::bounding_polyhedron(tests::box_corners({60, 0, 6}), layers::BoundKind::Box8);
+  EXPECT_EQ(floor.compare(floor.spot_at(40), floor.spot_at(43)).color, 0);
 }
 
 }  // namespace

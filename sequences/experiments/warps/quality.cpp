@@ -18,6 +18,7 @@ Settings settings_for(const RateOptions& options, Curve curve, double threshold_
   settings.fps = options.fps;
   settings.bound = options.bound;
   settings.curve = curve;
+  settings.layers_own_warps = false;
   settings.regulator.policy = regulator::Policy::Threshold;
   regulator::Thresholds& thresholds = settings.regulator.thresholds;
   thresholds.geometric_px = threshold_px;

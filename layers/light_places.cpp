@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/light_places.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <glm/geometric.hpp>
+
+#include "layers/vectors.h"
+
+namespace talisman::layers {
+namespace {
+
+constexpr double kEdgeOnShare = 1e-12;  ///< of the edges' product: a triangle without area, or seen edge-on
+constexpr double kEdgeSlack = 1e-9;     ///< a ray through an edge hits both triangles
+
+/// Two unit vectors across `axis`, which has unit length.
+std::array<dvec3, 2> across(const dvec3& axis) {
+  const dvec3 u = normalize(cross(axis, std::fabs(axis.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+  return {u, cross(axis, u)};
+}
+
+/// Calls visit(unit vector) for the ring at an angle about the axis.
+template <typename Visit>
+void for_each_on_cone(const dvec3& axis, double cosine, const Visit& visit) {
+  const auto [u, v] = across(axis);
+  const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
+  for (int k = 0; k < kRing; ++k) {
+    const double turn = 2 * std::numbers::pi * k / kRing;
+    visit(cosine * axis + sine * (std::cos(turn) * u + std::sin(turn) * v));
+  }
+}
+
+/// One face of the body, as a plane that is bounded by a triangle.
+struct HullFace {
+  dvec3 a, ab, ac, normal;
+  bool is_flat = false;  ///< it has no area
+
+  HullFace(const BodySurface& body, const std::array<int, 3>& t)
+      : a(body.points[t[0]]), ab(body.points[t[1]] - a), ac(body.points[t[2]] - a), normal(cross(ab, ac)) {
+    const double area = glm::length(normal);
+    is_flat = !(area > kEdgeOnShare * glm::length(ab) * glm::length(ac)) || !std::isfinite(area);
+    if (!is_flat) normal /= area;
+  }
+  double height(const dvec3& p) const { return dot(normal, p - a); }
+};
+
+/// The first crossing of the body by the ray, by Möller & Trumbore 1997. Its distance, or infinity.
+double first_crossing(const BodySurface& body, const dvec3& from, const dvec3& way, SurfacePlace& place) {
+  double nearest = HUGE_VAL;
+  for (const auto& t : body.triangles) {
+    const dvec3 a = body.points[t[0]], ab = body.points[t[1]] - a, ac = body.points[t[2]] - a;
+    const dvec3 p = cross(way, ac);
+    const double determinant = dot(ab, p);
+    if (!(std::fabs(determinant) > kEdgeOnShare * glm::length(ab) * glm::length(ac))) continue;
+    const dvec3 to_start = from - a, q = cross(to_start, ab);
+    const double u = dot(to_start, p) / determinant, v = dot(way, q) / determinant;
+    const double distance = dot(ac, q) / determinant;
+    if (!(u >= -kEdgeSlack && v >= -kEdgeSlack && u + v <= 1 + kEdgeSlack && distance > 0 &&
+          distance < nearest))
+      continue;
+    nearest = distance;
+    const dvec3 normal = normalize(cross(ab, ac));
+    place = {from + distance * way, dot(normal, way) > 0 ? -normal : normal};
+  }
+  return nearest;
+}
+
+void add_ray(const BodySurface& body, const dvec3& from, const dvec3& way,
+             std::vector<SurfacePlace>& places) {
+  SurfacePlace place;
+  if (std::isfinite(first_crossing(body, from, way, place))) places.push_back(place);
+}
+
+void add_cone(const LightState& light, const BodySurface& body, std::vector<SurfacePlace>& places) {
+  const double length = glm::length(light.direction);
+  if (!(length > 0)) return;
+  const dvec3 axis = light.direction / length;
+  add_ray(body, light.position, axis, places);
+  const double half = (std::cos(light.inner_cone_rad) + std::cos(light.outer_cone_rad)) / 2;
+  for_each_on_cone(axis, half, [&](const dvec3& way) { add_ray(body, light.position, way, places); });
+}
+
+/// The foot of the light on the face, if the body is there, and the ring about it.
+void add_foot(const LightState& light, const HullFace& face, const BodySurface& body,
+              std::vector<SurfacePlace>& places) {
+  const double height = face.height(light.position);
+  if (height == 0) return;
+  const dvec3 down = height > 0 ? -face.normal : face.normal;
+  SurfacePlace foot;
+  const double depth = first_crossing(body, light.position, down, foot);
+  if (!(std::fabs(depth - std::fabs(height)) <= kEdgeSlack * (depth + glm::length(face.ab)))) return;
+  places.push_back(foot);
+  for_each_on_cone(down, std::numbers::sqrt2 / 2,
+                   [&](const dvec3& way) { add_ray(body, light.position, way, places); });
+}
+
+/// What the eye sees in this direction, if it is on the plane of the face.
+void add_seen(const dvec3& eye, const dvec3& target, const HullFace& face, const BodySurface& body,
+              std::vector<SurfacePlace>& places) {
+  const double distance = glm::distance(eye, target);
+  if (!(distance > 0)) return;
+  SurfacePlace place;
+  const double depth = first_crossing(body, eye, (target - eye) / distance, place);
+  if (std::fabs(depth - distance) <= 1e-6 * distance && std::fabs(dot(place.normal, face.normal)) > 0.999)
+    places.push_back(place);
+}
+
+/// The highlight on one face. With V and L of lengths v and l a step δ across the place turns H by about
+/// δ (1/v + 1/l) / 2.
+void add_highlight(const LightState& light, const dvec3& eye, double shininess, const HullFace& face,
+                   const BodySurface& body, std::vector<SurfacePlace>& places) {
+  const bool is_directional = light.kind == Light::Kind::Directional;
+  const dvec3 image = eye - 2 * face.height(eye) * face.normal;
+  const dvec3 way = is_directional ? -light.direction : light.position - image;
+  const double slope = dot(face.normal, way), height = -face.height(image);
+  const bool same_side =
+      is_directional ? slope * face.height(eye) > 0 : face.height(light.position) * face.height(eye) > 0;
+  if (!same_side || slope == 0) return;
+  const dvec3 place = image + height / slope * way;
+  if (!layers::is_finite(place)) return;
+  add_seen(eye, place, face, body, places);
+  const double half_angle = std::acos(std::pow(0.5, 1 / std::max(shininess, 1.0)));
+  const double from_light = is_directional ? HUGE_VAL : glm::distance(light.position, place);
+  const double step = 2 * std::tan(half_angle) / (1 / glm::distance(eye, place) + 1 / from_light);
+  if (!(step > 0 && std::isfinite(step))) return;
+  for_each_on_cone(face.normal, 0,
+                   [&](const dvec3& aside) { add_seen(eye, place + step * aside, face, body, places); });
+}
+
+}  // namespace
+
+void append_light_places(const LightState& light, const dvec3& eye, const MeanSurface& surface,
+                         const BodySurface& body, std::vector<SurfacePlace>& places) {
+  if (light.kind == Light::Kind::Ambient || !layers::is_finite(light.position) || !layers::is_finite(light.direction)) return;
+  if (light.kind == Light::Kind::Spot) add_cone(light, body, places);
+  const bool has_feet = light.kind == Light::Kind::Point;
+  if (!has_feet && !surface.has_specular()) return;
+  dvec3 last_normal(0.0);
+  for (const auto& triangle : body.triangles) {
+    const HullFace face(body, triangle);
+    // The triangles of a face follow each other.
+    if (face.is_flat || std::fabs(dot(face.normal, last_normal)) > 1 - 1e-12) continue;
+    last_normal = face.normal;
+    if (has_feet) add_foot(light, face, body, places);
+    if (surface.has_specular()) add_highlight(light, eye, surface.shininess, face, body, places);
+  }
+}
+
+}  // namespace talisman::layers

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/results/audit.h"
+
+#include <algorithm>
+#include <cstdio>
+
+#include "sequences/files/folders.h"
+#include "sequences/pictures/apparent_shift.h"
+#include "sequences/pictures/flip.h"
+#include "sequences/pictures/picture_sheet.h"
+#include "sequences/pictures/quality.h"
+#include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/shade_passes.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+chunker::Frame alone(const chunker::PlacedSprite& sprite, layers::ivec2 display_px) {
+  chunker::Frame frame{display_px.x, display_px.y, {}};
+  frame.pixels.resize(static_cast<std::size_t>(display_px.x) * static_cast<std::size_t>(display_px.y));
+  chunker::composite_onto(frame, {&sprite, 1});
+  return frame;
+}
+
+chunker::PlacedSprite placed(const chunker::Sprite& sprite, const layers::dmat3& screen_from_sprite,
+                             const SpriteMultipliers& multipliers) {
+  return {&sprite, screen_from_sprite, multipliers.color, multipliers.alpha};
+}
+
+/// The layer as `reference` shows it in this frame.
+chunker::Frame drawn_fresh(const Pipeline& pipeline, PipelineState& state, const FrameReport& report,
+                           int layer, const chunker::PreparedScene& prepared) {
+  const layers::SceneFrame now = scene_at(pipeline, report.frame);
+  const layers::LayerState& layer_state = captured_states(pipeline, state, report.frame)[layer];
+  const layers::SpritePlacement placement = placement_without_growth(pipeline, report.layers, layer_state);
+  ShadowMapStore maps;
+  const chunker::RenderResult result =
+      draw_layer({pipeline, report.layers, maps, prepared, now}, report.layers[layer], placement);
+  return alone(placed(result.sprite, layers::to_mat3(placement.screen_from_sprite),
+                      multipliers_at(report.layers[layer], time_of(pipeline, report.frame))),
+               pipeline.settings.view.display_px);
+}
+
+/// Over grey, so that black and white silhouettes are seen.
+Image8 over_grey(chunker::Frame frame, const Crop& crop) {
+  constexpr std::uint32_t kGrey = chunker::kOne / 5;
+  for (chunker::Linear16& p : frame.pixels) {
+    const std::uint32_t behind = kGrey * (chunker::kOne - p.a) / chunker::kOne;
+    const auto add = [behind](std::uint16_t c) {
+      return static_cast<std::uint16_t>(std::min(c + behind, chunker::kOne));
+    };
+    p = {add(p.r), add(p.g), add(p.b), static_cast<std::uint16_t>(chunker::kOne)};
+  }
+  return cropped(to_image8(frame), crop);
+}
+
+std::string sheet_name(std::string layer) {
+  std::replace(layer.begin(), layer.end(), '/', '-');
+  return layer + ".png";
+}
+
+std::string audit_line(const char* pattern, auto... values) {
+  char line[256];
+  std::snprintf(line, sizeof line, pattern, values...);
+  return line;
+}
+
+std::vector<std::string> audit_title(const LayerAudit& audit) {
+  const AuditedReuse& w = audit.worst;
+  return {
+      audit_line("%s, frame %d, drawn %d frames before", audit.layer.c_str(), w.frame, w.age_frames),
+      audit_line("said: geometric %.2f px, photometric %.3f", w.geometric_px, w.photometric),
+      audit_line("seen: shift %.2f px (p95), RMS %.3f, missing %.1f %%", w.shift_px, w.rms, 100 * w.missing)};
+}
+
+Image8 sheet_of_worst(const LayerAudit& audit, const Image8& shown, const Image8& fresh) {
+  constexpr int kLargest_px = 480, kGain = 4;
+  const Crop crop = most_different({&shown}, fresh, kLargest_px, kLargest_px);
+  const int scale = std::max(1, kLargest_px / 2 / std::max({crop.width, crop.height, 1}));
+  const Image8 a = cropped(shown, crop), b = cropped(fresh, crop);
+  return sheet_of(audit_title(audit),
+                  {{{"shown"}, {a}}, {{"fresh"}, {b}}, {{"difference x 4"}, {difference(a, b, kGain)}}},
+                  scale);
+}
+
+}  // namespace
+
+double AuditedReuse::excess() const {
+  return std::max((shift_px - geometric_px) / kShiftSlack_px, (rms - photometric) / kLightSlack);
+}
+
+std::string AuditedReuse::should_have_spoken() const {
+  if (!beyond()) return {};
+  if (missing > kMissing) return "visibility";
+  return shift_px - geometric_px > kShiftSlack_px ? "geometric" : "photometric";
+}
+
+Auditor::Kept& Auditor::of_layer(const std::string& name) {
+  const auto [it, is_new] = index_of_.try_emplace(name, layers_.size());
+  if (is_new) layers_.emplace_back().audit.layer = name;
+  return layers_[it->second];
+}
+
+void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameReport& report,
+                   const chunker::PreparedScene& prepared) {
+  for (const ShownSprite& sprite : report.shown) {
+    const regulator::LayerDecision& decision = report.plan.decisions[sprite.layer];
+    if (decision.action != regulator::Action::Reuse) continue;
+    Kept& kept = of_layer(report.layers[sprite.layer].name);
+    if (++kept.audit.reuses % every_ != 0) continue;
+    const chunker::Sprite* old = state.sprites.find(sprite.layer);
+    if (!old) continue;
+    const layers::ivec2 display_px = pipeline.settings.view.display_px;
+    const chunker::Frame shown =
+        alone(placed(*old, sprite.screen_from_sprite, sprite.multipliers), display_px);
+    const chunker::Frame fresh = drawn_fresh(pipeline, state, report, sprite.layer, prepared);
+    const ApparentShift seen = apparent_shift(shown, fresh, decision.shown_geometric_px);
+    const fiducials::Photometric& light = report.assessments[sprite.layer].fiducials.photometric;
+    AuditedReuse reuse{report.frame,
+                       sprite.age_frames,
+                       decision.shown_geometric_px,
+                       light.computed ? light.color : 0,
+                       seen.p95_px,
+                       seen.rms,
+                       seen.missing,
+                       0};
+    ++kept.audit.audited;
+    kept.audit.beyond += reuse.beyond();
+    if (kept.audit.worst.frame >= 0 && reuse.excess() <= kept.audit.worst.excess()) continue;
+    if (seen.seen.width > 0) {
+      kept.shown = over_grey(shown, seen.seen), kept.fresh = over_grey(fresh, seen.seen);
+      reuse.flip = mean(flip_map(kept.shown, kept.fresh));
+    }
+    kept.audit.worst = reuse;
+  }
+}
+
+std::vector<LayerAudit> Auditor::finish() {
+  std::vector<LayerAudit> audits;
+  for (Kept& kept : layers_) {
+    if (kept.fresh.width > 0) {
+      create_folder(folder_);
+      kept.audit.sheet = sheet_name(kept.audit.layer);
+      write_png(folder_ + "/" + kept.audit.sheet, sheet_of_worst(kept.audit, kept.shown, kept.fresh));
+    }
+    audits.push_back(kept.audit);
+  }
+  return audits;
+}
+
+std::string table_of(const std::vector<LayerAudit>& audit) {
+  std::string rows = audit_line("  %-24s %7s %7s %6s %9s %9s %8s %8s %7s  %s\n", "audit of reuses", "audited",
+                                "beyond", "worst", "said px", "seen px", "said", "RMS", "FLIP", "");
+  for (const LayerAudit& a : audit) {
+    const std::string name = a.layer.size() <= 24 ? a.layer : a.layer.substr(0, 21) + "...";
+    if (a.audited == 0) {
+      rows += audit_line("  %-24s %7d\n", name.c_str(), 0);
+      continue;
+    }
+    const std::string verdict = a.marked()     ? "MARKED: " + a.worst.should_have_spoken()
+                                : a.beyond > 0 ? a.worst.should_have_spoken()
+                                               : "";
+    rows += audit_line("  %-24s %7d %7d %6d %9.3f %9.3f %8.3f %8.3f %7.4f  %s\n", name.c_str(), a.audited,
+                       a.beyond, a.worst.frame, a.worst.geometric_px, a.worst.shift_px, a.worst.photometric,
+                       a.worst.rms, a.worst.flip, verdict.c_str());
+  }
+  return rows;
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "layers/light_places.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "layers/polyhedron.h"
+#include "tests/layers/worlds.h"
+
+namespace talisman::tests {
+namespace {
+
+using layers::BodySurface;
+using layers::Light;
+using layers::LightState;
+using layers::MeanSurface;
+using layers::SurfacePlace;
+
+/// A floor of 20 m at y = 0, as its flat hull.
+const layers::Polyhedron& floor_hull() {
+  static const layers::Polyhedron hull =
+      layers::bounding_polyhedron(box_corners({10, 0, 10}), layers::BoundKind::Box8);
+  return hull;
+}
+
+std::vector<SurfacePlace> places_of(const LightState& light, const dvec3& eye = {0, 5, 8},
+                                    const MeanSurface& surface = {}) {
+  std::vector<SurfacePlace> places;
+  layers::append_light_places(light, eye, surface, {floor_hull().points, floor_hull().triangles}, places);
+  return places;
+}
+
+LightState spot(const dvec3& position, double inner_rad, double outer_rad) {
+  LightState light = lamp(position);
+  light.kind = Light::Kind::Spot;
+  light.direction = {0, -1, 0};
+  light.inner_cone_rad = inner_rad, light.outer_cone_rad = outer_rad;
+  return light;
+}
+
+TEST(LightPlaces, SpotDrawsItsAxisAndTheRingOfHalfLight) {
+  const auto places = places_of(spot({1, 4, 2}, 0.2, 0.3));
+  ASSERT_EQ(places.size(), 1u + layers::kRing);
+  EXPECT_LT(glm::distance(places[0].position, {1, 0, 2}), 1e-9);
+  const double half = std::acos((std::cos(0.2) + std::cos(0.3)) / 2);
+  for (std::size_t i = 1; i < places.size(); ++i) {
+    EXPECT_NEAR(glm::distance(places[i].position, {1, 0, 2}), 4 * std::tan(half), 1e-9);
+    EXPECT_LT(glm::distance(places[i].normal, {0, 1, 0}), 1e-12);
+  }
+}
+
+TEST(LightPlaces, SpotFromBelowLightsTheUnderside) {
+  LightState light = spot({0, -3, 0}, 0.2, 0.3);
+  light.direction = {0, 1, 0};
+  for (const SurfacePlace& place : places_of(light)) EXPECT_EQ(place.normal, dvec3(0, -1, 0));
+}
+
+TEST(LightPlaces, WhatMissesTheBodyHasNone) {
+  EXPECT_TRUE(places_of(spot({40, 4, 0}, 0.2, 0.3)).empty());
+  EXPECT_TRUE(places_of(ambient({1, 1, 1})).empty());
+  EXPECT_TRUE(places_of(sun({0.2, -1, 0})).empty()) << "lights all of a matt floor alike";
+  LightState broken = spot({0, 4, 0}, 0.2, 0.3);
+  broken.position.x = std::nan("");
+  EXPECT_TRUE(places_of(broken).empty());
+}
+
+TEST(LightPlaces, PointLightHasItsFootAndARingAtFortyFiveDegrees) {
+  const auto places = places_of(lamp({2, 3, -1}));
+  ASSERT_EQ(places.size(), 1u + layers::kRing) << "the two sides of a flat floor are one face";
+  EXPECT_LT(glm::distance(places[0].position, {2, 0, -1}), 1e-9);
+  for (int i = 1; i <= layers::kRing; ++i)
+    EXPECT_NEAR(glm::distance(places[static_cast<std::size_t>(i)].position, {2, 0, -1}), 3, 1e-9);
+}
+
+TEST(LightPlaces, HighlightObeysTheLawOfReflection) {
+  MeanSurface shiny;
+  shiny.specular = dvec3(0.5);
+  shiny.shininess = 60;
+  const dvec3 eye(0, 4, 6);
+  const auto of_sun = places_of(sun({0, -1, 1}), eye, shiny);
+  ASSERT_FALSE(of_sun.empty());
+  EXPECT_LT(glm::distance(of_sun[0].position, {0, 0, 2}), 1e-9) << "45° up to the eye, 45° up to the sun";
+  // Around it the lobe is a half: (N·H)^60 a half where the plane is not seen aslant.
+  for (std::size_t i = 1; i < of_sun.size(); ++i) {
+    const dvec3 to_eye = glm::normalize(eye - of_sun[i].position), to_sun = glm::normalize(dvec3(0, 1, -1));
+    const double lobe = std::pow(glm::normalize(to_eye + to_sun).y, 60);
+    EXPECT_GT(lobe, 0.2);
+    EXPECT_LT(lobe, 0.9);
+  }
+  EXPECT_TRUE(places_of(sun({0, 1, 1}), eye, shiny).empty()) << "the sun is below";
+}
+
+TEST(LightPlaces, LampInARoomLightsItsWalls) {
+  const layers::Polyhedron room =
+      layers::bounding_polyhedron(box_corners({3, 2, 3}), layers::BoundKind::Box8);
+  std::vector<SurfacePlace> places;
+  layers::append_light_places(spot({0, 0, 0}, 0.3, 0.5), {1, 1, 1}, {}, {room.points, room.triangles},
+                              places);
+  ASSERT_EQ(places.size(), 1u + layers::kRing);
+  for (const SurfacePlace& place : places) {
+    EXPECT_NEAR(place.position.y, -2, 1e-9);
+    EXPECT_GT(place.normal.y, 0.99) << "towards the lamp";
+  }
+}
+
+}  // namespace
+}  // namespace talisman::tests
