@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 
 #include "layers/check.h"
@@ -70,7 +71,9 @@ std::string_view name(Action action) {
 
 namespace {
 
-LayerDecision decide(int frame, const LayerAssessment& layer, const RegulatorOptions& options) {
+LayerDecision decide(const FrameBeat& beat, const LayerAssessment& layer, const RegulatorOptions& options) {
+  if (options.policy == Policy::Hold) return decide_hold(beat, layer, options);
+  if (options.policy == Policy::Interpolate) return decide_interpolate(beat, layer, options);
   if (!layer.in_view) return drop(layer);
   if (options.policy == Policy::Direct) return decide_every_frame(layer, "policy: direct");
   if (!layer.has_sprite) return rerender(layer, "first_appearance");
@@ -78,31 +81,45 @@ LayerDecision decide(int frame, const LayerAssessment& layer, const RegulatorOpt
     case Policy::Direct:
     case Policy::Reference:
       return decide_every_frame(layer, "policy: reference");
-    case Policy::Hold:
-      return decide_hold(frame, layer, options);
-    case Policy::Interpolate:
-      return decide_interpolate(frame, layer, options);
     case Policy::Threshold:
     case Policy::Lookahead:  // whether to draw again; as of which instant is chosen with the states at hand
     case Policy::Oracle:
       return decide_threshold(layer, options);
-    case Policy::Budget:
-      break;  // decides over all layers at once
+    case Policy::Hold:
+    case Policy::Interpolate:  // decided above
+    case Policy::Budget:       // decides over all layers at once
+      break;
   }
   return {};
 }
 
 }  // namespace
 
+bool FrameBeat::drew(const LayerAssessment& layer) const {
+  return layer.has_sprite && layer.frames_since_render == std::abs(frame - last_beat);
+}
+
+bool keeps_beat(Policy policy) { return policy == Policy::Hold || policy == Policy::Interpolate; }
+
+FrameBeat regular_beat(int frame, const RegulatorOptions& options) {
+  return {frame, frame - frame % options.hold_frames};
+}
+
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options) {
   TALISMAN_CHECK_EQ(first_defect(options), std::string());
-  FramePlan plan{frame, {}};
+  return regulate(regular_beat(frame, options), assessments, options);
+}
+
+FramePlan regulate(const FrameBeat& beat, std::span<const LayerAssessment> assessments,
+                   const RegulatorOptions& options) {
+  TALISMAN_CHECK_EQ(first_defect(options), std::string());
+  FramePlan plan{beat.frame, {}};
   if (options.policy == Policy::Budget) {
     plan.decisions = decide_budget(assessments, options);
     return plan;
   }
   plan.decisions.reserve(assessments.size());
-  for (const LayerAssessment& layer : assessments) plan.decisions.push_back(decide(frame, layer, options));
+  for (const LayerAssessment& layer : assessments) plan.decisions.push_back(decide(beat, layer, options));
   return plan;
 }
 

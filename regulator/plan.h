@@ -23,8 +23,8 @@ namespace talisman::regulator {
 enum class Policy {
   Direct,       ///< the whole scene in one pass, no sprites: the truth
   Reference,    ///< every layer, every frame, through sprites
-  Hold,         ///< every N frames; shown where it was in between (triple framing is N = 3)
-  Interpolate,  ///< every N frames, warped in between
+  Hold,         ///< every N frames; that picture stands in between (triple framing is N = 3) [LS97 7.2]
+  Interpolate,  ///< every N frames, each sprite warped in between
   Threshold,    ///< when a fiducial exceeds its threshold
   Budget,       ///< what gains most for its cost, until the frame's budget is spent
   Lookahead,    ///< as Threshold, but drawn as of the instant within N frames that serves longest
@@ -52,9 +52,9 @@ struct LayerCost {
 struct LayerAssessment {
   int layer = -1;
   bool in_view = false;
-  bool has_sprite = false;  ///< it was rendered before
-  bool identical = false;   ///< its state equals the state at its last render: reuse loses nothing
-  int frames_since_render = 0;
+  bool has_sprite = false;       ///< it was rendered before
+  bool identical = false;        ///< its state equals the state at its last render: reuse loses nothing
+  int frames_since_render = 0;   ///< valid if has_sprite
   int matched_points = 0;        ///< correspondences behind `fitted`; too few say nothing about the motion
   warp::FitResult fitted;        ///< valid if has_sprite
   fiducials::Report fiducials;   ///< valid if has_sprite
@@ -154,7 +154,26 @@ struct FramePlan {
   std::vector<LayerDecision> decisions;  ///< by layer id
 };
 
+/// Hold and Interpolate draw on the beat: pictures, order and fades are those of the last beat, and what was out
+/// of view then waits for the next one.
+struct FrameBeat {
+  int frame = 0;      ///< that is planned
+  int last_beat = 0;  ///< the frame in which all layers were drawn; `frame`: they are drawn now
+  bool is_now() const { return last_beat == frame; }
+  /// Is the layer's sprite that of the last beat?
+  bool drew(const LayerAssessment& layer) const;
+};
+
+/// Do pictures stand from one beat to the next under this policy?
+bool keeps_beat(Policy policy);
+
+/// As if the run had begun at frame 0: a beat is every frame that hold_frames divides.
+FrameBeat regular_beat(int frame, const RegulatorOptions& options);
+
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options);
+/// The same where the last beat was another one, because the run began between two of them.
+FramePlan regulate(const FrameBeat& beat, std::span<const LayerAssessment> assessments,
+                   const RegulatorOptions& options);
 
 /// Do the options ask for the colour warp or a threshold of the light, whatever the policy?
 bool asks_for_light(const RegulatorOptions& options);

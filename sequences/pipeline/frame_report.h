@@ -44,11 +44,11 @@ struct FrameReport {
   FrameOrder order;
   regulator::FramePlan plan;
   std::vector<regulator::LayerAssessment>
-      assessments;                    ///< by layer id, aggregates behind the author's layers
-  std::vector<ShownSprite> shown;     ///< back to front
-  int layers_assessed = 0;            ///< in view with an old sprite: fitted and judged
-  std::int64_t pixels_reference = 0;  ///< texels that `reference` would render for this frame
-  chunker::RenderCounters render;     ///< summed over the layers rendered for this frame
+      assessments;                 ///< by layer id, aggregates behind the author's layers
+  std::vector<ShownSprite> shown;  ///< back to front
+  int layers_assessed = 0;         ///< in view with an old sprite: fitted and judged
+  regulator::LayerCost reference;  ///< polygons and pixels that `reference` would render for this frame
+  chunker::RenderCounters render;  ///< summed over the layers rendered for this frame
   std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
   chunker::CompositeCounters composite;
   std::optional<CompressionReport> compression;  ///< of the sprites drawn for this frame, and of its reads

@@ -140,15 +140,24 @@ SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, 
              : scene_at(pipeline, frame);
 }
 
+/// Does the picture of that beat stand in `frame`?
+bool continues(const Pipeline& pipeline, const BeatMemory& beat, int frame) {
+  const int period = pipeline.settings.regulator.hold_frames;
+  return frame % period != 0 && frame / period == beat.frame / period;
+}
+
 }  // namespace
 
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
+  if (!state.authored.is_copy_of(pipeline.authored)) state.beat.reset();
   adopt_layers(pipeline, state);
   const Policy policy = pipeline.settings.regulator.policy;
   auto& captured = state.captured;
   if (state.planned_with != pipeline.settings.regulator || predicts(pipeline))
     forget(state, captured.begin(), captured.end());
+  if (state.planned_with != pipeline.settings.regulator) state.beat.reset();
   state.planned_with = pipeline.settings.regulator;
+  if (state.beat && !continues(pipeline, *state.beat, frame)) state.beat.reset();
   state.now = frame;
   state.motion.reset();
   if (predicts(pipeline)) {
@@ -245,6 +254,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));
   assessment.held_geometric_px += assessment.fiducials.shade.px;
+  if (matched.then_px.empty() && !assessment.identical) assessment.held_geometric_px = warp::kHugePx;
   return assessment;
 }
 
@@ -253,9 +263,11 @@ LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int
   const LayerMemory& memory = state.memory[layer_id];
   const LayerState& now = captured_states(pipeline, state, frame)[layer_id];
   LayerAssessment assessment;
-  if (now.touches_display && memory.then)
+  const bool is_held = pipeline.settings.regulator.policy == Policy::Hold;  // shown, in view or not
+  if ((now.touches_display || is_held) && memory.then)
     assessment = assess_sprite(pipeline, state.layers, *memory.then, memory.placement, now,
                                std::abs(frame - memory.frame_rendered));
+  if (memory.then) assessment.frames_since_render = std::abs(frame - memory.frame_rendered);
   assessment.layer = layer.id;
   assessment.frames_short_of_area = memory.frames_short_of_area;
   see_through_resolution(assessment, memory.resolution);

@@ -80,6 +80,12 @@ struct MotionKnown {
   layers::SceneFrame before, now;  ///< `before` is `now` at frame 0
 };
 
+/// Policies Hold and Interpolate: what stands from the last beat to the next [LS97 7.2].
+struct BeatMemory {
+  int frame = 0;  ///< of that beat
+  FrameOrder order;
+};
+
 /// All that survives a frame.
 struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline)
@@ -90,7 +96,9 @@ struct PipelineState {
   chunker::SpriteStore sprites;     ///< as the compositor shows them: decompressed if they are compressed
   CompressedSprites compressed;     ///< empty unless Settings::compression asks for it
   OrderMemory order;
+  std::optional<BeatMemory> beat;  ///< empty unless the policy keeps one
   ShadePlan shade_plan;
+  ShadePlan reference_shades;  ///< of the policy `reference`: the yardstick of what is saved
   ShadowMapStore shadow_maps;
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
   std::vector<CapturedFrame> forgotten;   ///< were captured; the next ones are captured in their memory

@@ -26,15 +26,39 @@ using layers::SpritePlacement;
 using regulator::Action;
 using regulator::LayerAssessment;
 
-/// What the policy `reference` would render for this frame: every layer in view, without growth.
-std::int64_t reference_pixels(const Pipeline& pipeline, const FrameReport& report,
-                              const std::vector<LayerState>& states) {
-  std::int64_t pixels = 0;
-  for (const int layer : report.order.back_to_front)
-    pixels += cost_of(report.layers[layer],
-                      placement_without_growth(pipeline, report.layers, states[layer]).size_px)
-                  .pixels;
-  return pixels;
+/// What the policy `reference` would render for this frame: every layer in view, without growth, and the shadow
+/// maps that changed since the last frame, whatever this run does. Between two beats, cycles are merged as on the
+/// last one.
+regulator::LayerCost reference_cost(const Pipeline& pipeline, PipelineState& state,
+                                    const FrameReport& report) {
+  const std::vector<LayerState>& states = captured_states(pipeline, state, report.frame);
+  const std::vector<ShadowMapKey>& maps = state.captured.at(report.frame).shadow_maps;
+  regulator::LayerCost sum;
+  ShadeCounters passes;
+  for (const Layer& layer : report.layers) {
+    if (!report.order.has_own_sprite(layer.id, layer.is_aggregate()) || !states[layer.id].touches_display)
+      continue;
+    const regulator::LayerCost cost =
+        cost_of(layer, placement_without_growth(pipeline, report.layers, states[layer.id]).size_px);
+    sum.polygons += cost.polygons;
+    sum.pixels += cost.pixels;
+    state.reference_shades.add_render(pipeline.scene, report.layers.set(), layer, maps, passes);
+  }
+  sum.polygons += passes.shadow_polygons;
+  return sum;
+}
+
+/// The order in which sprites are composited; may merge layers into aggregates.
+FrameOrder order_of(const Pipeline& pipeline, PipelineState& state, int frame) {
+  if (state.beat) return standing_order(state.beat->order);
+  FrameOrder order = order_layers(pipeline, state, frame);
+  if (regulator::keeps_beat(pipeline.settings.regulator.policy)) state.beat = BeatMemory{frame, order};
+  return order;
+}
+
+/// The time whose fades are shown.
+double time_of_fades(const Pipeline& pipeline, const PipelineState& state, int frame) {
+  return time_of(pipeline, state.beat ? state.beat->frame : frame);
 }
 
 /// A layer that another one draws in this frame, or an aggregate that does not exist in it, is out of view.
@@ -108,13 +132,14 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
 /// The sprites of this frame, back to front, each with the map that puts it in its place.
 std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineState& state,
                                        const FrameReport& report) {
+  const double fades_s = time_of_fades(pipeline, state, report.frame);
   std::vector<ShownSprite> shown;
   shown.reserve(report.order.back_to_front.size());
   for (const int layer : report.order.back_to_front) {
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
-    SpriteMultipliers multipliers = multipliers_at(report.layers[layer], time_of(pipeline, report.frame));
+    SpriteMultipliers multipliers = multipliers_at(report.layers[layer], fades_s);
     if constexpr (layers::is_built(layers::Effect::ColorWarp))
       multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
@@ -237,7 +262,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   // Decide: no pixel is touched up to and including the plan.
   const Stopwatch plan_watch;
   begin_frame(pipeline, state, frame);
-  report.order = order_layers(pipeline, state, frame);  // may merge layers into aggregates
+  report.order = order_of(pipeline, state, frame);
   report.layers = state.layers;
   report.render_by_layer.resize(report.layers.size());
   report.assessments.reserve(report.layers.size());
@@ -247,9 +272,10 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   }
   if (pipeline.settings.regulator.policy == regulator::Policy::Budget)
     fit_resolutions(pipeline, state, frame, report.assessments);
-  report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
+  report.plan = regulator::regulate({frame, state.beat ? state.beat->frame : frame}, report.assessments,
+                                    pipeline.settings.regulator);
   double bookkeeping_ms = plan_watch.ms();
-  report.pixels_reference = reference_pixels(pipeline, report, captured_states(pipeline, state, frame));
+  report.reference = reference_cost(pipeline, state, report);
   if (pipeline.settings.budget_gap) report.budget_gap = gap_of(pipeline, report);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   remember_renders(pipeline, state, report);

@@ -58,15 +58,13 @@ FrameLine line_of(const FrameReport& report) {
     line.reuses += d.action == regulator::Action::Reuse;
     line.polygons.rendered += d.cost.polygons;
     line.pixels.rendered += d.cost.pixels;
-    if (d.action == regulator::Action::Drop) continue;
-    ++line.layers_in_view;
-    line.polygons.reference += report.layers[d.layer].polygons;
+    line.layers_in_view += d.action != regulator::Action::Drop;
   }
   line.passes = {report.shade.shadow_maps_drawn, report.shade.shadow_maps_reused,
                  report.shade.reflections_drawn};
   line.polygons.rendered += report.shade.shadow_polygons;
-  line.polygons.reference += report.shade.shadow_polygons;  // drawn for the layers of this frame
-  line.pixels.reference = report.pixels_reference;
+  line.polygons.reference = report.reference.polygons;
+  line.pixels.reference = report.reference.pixels;
   line.times.plan_ms = report.times.plan_ms;
   if (report.order.sorted) {
     line.visibility = {report.order.counters, report.order.merged_parts, report.order.resolved_counters()};
