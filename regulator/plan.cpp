@@ -10,6 +10,7 @@
 #include "regulator/budget.h"
 #include "regulator/decision.h"
 #include "regulator/policies.h"
+#include "regulator/shadow_maps.h"
 
 namespace talisman::regulator {
 
@@ -54,6 +55,14 @@ std::string_view name(Prediction prediction) {
 std::optional<Prediction> prediction_from_name(std::string_view text) {
   for (const Prediction prediction : kAllPredictions)
     if (name(prediction) == text) return prediction;
+  return std::nullopt;
+}
+
+std::string_view name(ChoiceRule rule) { return rule == ChoiceRule::Best ? "best" : "paper"; }
+
+std::optional<ChoiceRule> choice_rule_from_name(std::string_view text) {
+  for (const ChoiceRule rule : kAllChoiceRules)
+    if (name(rule) == text) return rule;
   return std::nullopt;
 }
 
@@ -111,15 +120,19 @@ FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, cons
 }
 
 FramePlan regulate(const FrameBeat& beat, std::span<const LayerAssessment> assessments,
-                   const RegulatorOptions& options) {
+                   const RegulatorOptions& options, std::span<const MapAssessment> maps) {
   TALISMAN_CHECK_EQ(first_defect(options), std::string());
-  FramePlan plan{beat.frame, {}};
+  FramePlan plan{beat.frame, {}, {}};
   if (options.policy == Policy::Budget) {
-    plan.decisions = decide_budget(assessments, options);
+    BudgetDecisions decided = decide_budget(assessments, options, maps);
+    plan.decisions = std::move(decided.layers);
+    plan.maps = std::move(decided.maps);
     return plan;
   }
   plan.decisions.reserve(assessments.size());
   for (const LayerAssessment& layer : assessments) plan.decisions.push_back(decide(beat, layer, options));
+  plan.maps = decide_maps(maps, plan.decisions, options);
+  show_held_maps(maps, plan.maps, plan.decisions);
   return plan;
 }
 
@@ -144,6 +157,7 @@ std::string first_defect(const Thresholds& t) {
   if (std::isnan(t.uncovered_px)) return broken("uncovered_px", t.uncovered_px, "a number (negative: off)");
   if (!(t.turned_px >= 0)) return broken("turned_px", t.turned_px, "at least 0 (0: off)");
   if (!(t.photometric >= 0)) return broken("photometric", t.photometric, "at least 0 (0: off)");
+  if (!(t.shadow_map_px >= 0)) return broken("shadow_map_px", t.shadow_map_px, "at least 0");
   if (!(t.light_angle_rad >= 0 && t.light_angle_rad <= std::numbers::pi))
     return broken("light_angle_rad", t.light_angle_rad, "0 (off) to pi, which is 180 degrees");
   return {};
@@ -157,6 +171,8 @@ std::string first_defect(const BudgetOptions& b) {
   if (!(b.min_resolution > 0 && b.min_resolution <= 1))
     return broken("min_resolution", b.min_resolution, "above 0 and at most 1");
   if (!(b.cutoff_px >= 0)) return broken("cutoff_px", b.cutoff_px, "at least 0");
+  if (!(b.depth_complexity == 0 || (b.depth_complexity >= 1 && b.depth_complexity < HUGE_VAL)))
+    return broken("depth_complexity", b.depth_complexity, "0 (measured) or at least 1");
   return {};
 }
 

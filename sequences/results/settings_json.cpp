@@ -22,6 +22,7 @@ Json value_of(const layers::ivec2& v) { return {v.x, v.y}; }
 Json value_of(const layers::dvec2& v) { return {v.x, v.y}; }
 Json value_of(regulator::Policy policy) { return regulator::name(policy); }
 Json value_of(regulator::Prediction prediction) { return regulator::name(prediction); }
+Json value_of(regulator::ChoiceRule rule) { return regulator::name(rule); }
 Json value_of(warp::Curve curve) { return warp::name(curve); }
 
 Json value_of(layers::BoundKind bound) {
