@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/check.h"
+#include "layers/vectors.h"
 
 namespace talisman::layers {
 namespace {
@@ -204,8 +205,6 @@ Cuts cuts_for(std::span<const dvec3> points, const Box& box, BoundKind kind) {
   }
   return {};
 }
-
-bool is_finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // ---- layers
 // ----------------------------------------------------------------------------------------------------

@@ -20,6 +20,9 @@
 
 namespace talisman::sequences {
 
+/// Some eleven hours at 24 frames a second.
+inline constexpr int kLongestRun_frames = 1'000'000;
+
 struct Sequence {
   std::string name;  ///< "canyon", or the model's file name without extension
   std::string file;  ///< what was read

@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "sequences/import/gltf_scene.h"
+#include "sequences/import/limits.h"
 #include "sequences/import/picture_kind.h"
 #include "sequences/import/texture_io.h"
 #include "sequences/import/texture_search.h"
@@ -15,7 +16,6 @@ namespace {
 constexpr int kNearest = 9728, kNearestMipNearest = 9984, kLinearMipNearest = 9985, kNearestMipLinear = 9986;
 constexpr int kLinear = 9729, kClampToEdge = 33071, kMirroredRepeat = 33648;
 constexpr double kLeastRoughness = 0.05;
-constexpr double kMaxShininess = 1024;
 
 layers::vec3 color_of(const std::vector<double>& c) {
   return {static_cast<float>(std::max(0.0, c[0])), static_cast<float>(std::max(0.0, c[1])),
@@ -103,11 +103,6 @@ GltfCoordinates coordinates_of(const Json& info) {
   return coordinates;
 }
 
-void make_opaque(layers::Texture& texture) {
-  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i] = 255;
-  texture.has_alpha = false;
-}
-
 /// Reads textures, each of them once, with and without its alpha.
 class Textures {
  public:
@@ -154,7 +149,7 @@ void set_gloss(double roughness, double metallic, const layers::vec3& dielectric
   metallic = std::clamp(metallic, 0.0, 1.0);
   to.specular =
       glm::mix(dielectric, to.base_color, static_cast<float>(metallic)) * static_cast<float>(1 - roughness);
-  to.shininess = static_cast<float>(std::min(kMaxShininess, 2 / std::pow(roughness, 4.0) - 2));
+  to.shininess = static_cast<float>(std::min<double>(kMaxShininess, 2 / std::pow(roughness, 4.0) - 2));
   if (to.shininess < 1)
     to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
 }
