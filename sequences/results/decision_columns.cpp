@@ -63,9 +63,7 @@ DecisionColumns what_was_done() {
                         "reuse (warp the old sprite), rerender, or drop (out of view)",
                         [](const Row& r) { return regulator::name(r.decision.action); }),
           computed<Row>("reason", "reason", "", "why, with the numbers that decided",
-                        [](const Row& r) { return r.decision.reason; }),
-          computed<Row>("deferred", "deferred", "", "worth drawing, but the frame's budget did not suffice",
-                        [](const Row& r) { return r.decision.deferred; })};
+                        [](const Row& r) { return r.decision.reason; })};
 }
 
 DecisionColumns warp_columns() {

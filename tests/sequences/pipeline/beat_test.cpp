@@ -78,8 +78,9 @@ void expect_pictures_of_beats(const Variant& variant, int frames, int period) {
   for (int frame = 0; frame < frames; ++frame) {
     const int beat = frame - frame % period;
     EXPECT_EQ(hash_of(held[frame].picture), hash_of(reference[beat].picture)) << "hold, frame " << frame;
-    if (frame == beat)
+    if (frame == beat) {
       EXPECT_EQ(hash_of(moved[frame].picture), hash_of(reference[beat].picture)) << "interpolate " << frame;
+    }
     for (const auto& reports : {held, moved})
       for (const ShownSprite& sprite : reports[frame].shown) EXPECT_LE(sprite.age_frames, frame - beat);
   }
