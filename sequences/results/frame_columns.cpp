@@ -138,8 +138,12 @@ FrameColumns frame_visibility() {
               [](auto& l) -> auto& { return l.visibility->counters.merged_components; }),
           sorting(
               "merged_layers", "layers", "in these",
-              [](auto& l) -> auto& { return l.visibility->counters.merged_layers; }),
-          sorting(
+              [](auto& l) -> auto& { return l.visibility->counters.merged_layers; })};
+}
+
+/// Compositing expressions, and the sprites that are merged all the same.
+FrameColumns frame_expressions() {
+  return {sorting(
               "resolved_components", "components", "cycles that an expression of the compositor shows",
               [](auto& l) -> auto& { return l.visibility->resolved.components; }),
           sorting(
@@ -224,7 +228,7 @@ const ColumnTable<FrameLine>& frame_table() {
     for (const FrameColumns& part :
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
-          frame_budget_gap(),
+          frame_expressions(), frame_budget_gap(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

@@ -153,7 +153,8 @@ TEST(Price, BudgetOfPolygonsHoldsShadowMapsToo) {
   // What is not drawn again is off, and the rows say by how much.
   EXPECT_GT(summary.layers[2].max_geometric_px, 50);
   EXPECT_GT(summary.layers[1].max_geometric_px, 20) << "the shadow on the floor stands still, too";
-  EXPECT_NEAR(summary.shadow_maps[0].max_geometric_px, summary.layers[1].max_geometric_px, 1e-6);
+  EXPECT_GE(summary.shadow_maps[0].max_geometric_px, summary.layers[1].max_geometric_px)
+      << "the farthest of all that look it up";
 }
 
 TEST(Price, BudgetOfTimeHoldsTheModelledTime) {
@@ -185,7 +186,7 @@ TEST(Price, SpriteDrawnFromAnOldMapStatesTheErrorOfItsShadow) {
   EXPECT_EQ(shadow.action, Action::Rerender);
   EXPECT_GT(shadow.shown_geometric_px, 3);
   EXPECT_EQ(reports[4].shadow_maps[0].pictures, 0);
-  EXPECT_NEAR(reports[4].shadow_maps[0].decision.shown_geometric_px, shadow.shown_geometric_px, 1e-9);
+  EXPECT_GE(reports[4].shadow_maps[0].decision.shown_geometric_px, shadow.shown_geometric_px);
 }
 
 TEST(Price, LateDrawingOfASpriteFromAnOldMapGivesTheSamePicture) {
@@ -228,17 +229,15 @@ TEST(Price, BudgetsAreKeptOverAllEffectsWithEitherChoice) {
     }
 }
 
-TEST(DepthComplexity, IsTheAreaOfWhatFacesTheEyeOverThatOfTheRectangle) {
-  // A ball fills pi/4 of its square once; its back is turned away.
+TEST(DepthComplexity, CountsWhatFacesTheEyeOnce) {
+  // A ball of diameter 1 m at 8.12 m, seen at 60 px / tan 20 deg: a disc of radius 10.15 px. Its back is turned away.
   Variant variant = ball_over_floor();
   variant.settings.regulator.policy = Policy::Reference;
   tests::Playback playback(variant.sequence, variant.settings);
   playback.next();
-  const layers::SpritePlacement& placement = playback.state.memory[2].placement;
   const double filled = texels_filled(playback.pipeline, playback.pipeline.scene.at(0),
-                                      playback.pipeline.authored[2], placement);
-  const double texels = static_cast<double>(placement.size_px.x) * placement.size_px.y;
-  EXPECT_NEAR(filled / texels, 0.785, 0.08);
+                                      playback.pipeline.authored[2], playback.state.memory[2].placement);
+  EXPECT_NEAR(filled, 323.6, 0.08 * 323.6);
 }
 
 TEST(DepthComplexity, IsFedBackIntoABudgetOfTimeAlone) {
