@@ -88,6 +88,7 @@ std::vector<int> face_with_normal(const std::vector<dvec3>& points, const dvec3&
   }
   std::sort(by_angle.begin(), by_angle.end());
   std::vector<int> face;
+  face.reserve(by_angle.size());
   for (const auto& [angle, i] : by_angle) face.push_back(i);
   return face;
 }

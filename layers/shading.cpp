@@ -239,6 +239,7 @@ void renumber(std::vector<Layer>& layers) {
 /// Each render of a mirror draws what it mirrors once more.
 void add_mirrored_polygons(std::vector<Layer>& layers) {
   std::vector<int> own;
+  own.reserve(layers.size());
   for (const Layer& layer : layers) own.push_back(layer.polygons);
   for (Layer& layer : layers)
     for (const int id : layer.reflected) layer.polygons += own[id];

@@ -256,6 +256,7 @@ std::vector<HeldCycle> VisibilitySorter::State::explain_component(MergedComponen
   }
   for (const LineRange& range : truly.cyclic) {
     std::vector<int> layers;
+    layers.reserve(range.count);
     for (int k = 0; k < range.count; ++k) layers.push_back(c.layers[truly.places[range.first + k]]);
     std::erase_if(held_in_it, [&](const HeldCycle& h) { return is_subset(h.layers, layers); });
     held_in_it.push_back({std::move(layers), frame});

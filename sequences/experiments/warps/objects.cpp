@@ -302,11 +302,13 @@ WarpObject load_warp_object(const std::string& name_or_file) {
 
 std::vector<WarpObject> load_warp_objects(std::vector<MissingObject>& missing) {
   std::vector<WarpObject> objects;
-  for (const ShippedObject& shipped : kShipped) try {
+  for (const ShippedObject& shipped : kShipped) {
+    try {
       objects.push_back(load_shipped(shipped));
     } catch (const InputError& error) {
       missing.push_back({shipped.name, error.what()});
     }
+  }
   return objects;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What must hold of whole plans, on random fleets of layers.
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -117,8 +119,8 @@ TEST(PlanBudget, ResolutionRisesAsPixelsGrow) {
 }
 
 TEST(PlanBudget, ResolutionChangesByATenthFromRenderToRenderUnlessItHadToWait) {
-  std::vector<double> at_last_render(12, 0);
-  std::vector<int> waited(12, 0);
+  std::map<int, double> at_last_render;  // by layer, of which there may come to be more: aggregates
+  std::map<int, int> waited;
   int changes = 0;
   for (const FrameReport& report : small_fleet(12, 2, within(kNoLimit, 2000)).run(kPlannedFrames, false))
     for (const regulator::LayerDecision& d : report.plan.decisions) {
