@@ -11,11 +11,8 @@
 #include "sequences/results/summary.h"
 #include "tests/sequences/playback.h"
 #include "tests/sequences/temporary_folder.h"
-#include "tests/support/sequences.h"
-#if __has_include("tests/support/random_scene.h")
 #include "tests/support/random_scene.h"
-#define TALISMAN_RANDOM_SCENES 1
-#endif
+#include "tests/support/sequences.h"
 
 namespace talisman::sequences {
 namespace {
@@ -250,7 +247,6 @@ TEST(DepthComplexity, IsFedBackIntoABudgetOfTimeAlone) {
   for (const FrameReport& report : play(variant, 3)) EXPECT_EQ(report.depth_complexity, 2);
 }
 
-#ifdef TALISMAN_RANDOM_SCENES
 TEST(Price, BudgetsAreKeptInScenesDrawnByLot) {
   const tests::TemporaryFolder folder;
   tests::write_checker(folder.path());
@@ -268,7 +264,6 @@ TEST(Price, BudgetsAreKeptInScenesDrawnByLot) {
   }
   std::printf("%d of %d frames beyond their budget, by first appearances\n", overdrawn, frames);
 }
-#endif
 
 }  // namespace
 }  // namespace talisman::sequences
