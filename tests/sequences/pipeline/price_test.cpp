@@ -251,7 +251,7 @@ TEST(Price, BudgetsAreKeptInScenesDrawnByLot) {
   const tests::TemporaryFolder folder;
   tests::write_checker(folder.path());
   int frames = 0, overdrawn = 0;
-  for (std::uint32_t seed = 1; seed <= 12; ++seed) {
+  for (std::uint32_t seed = 1; seed <= 6; ++seed) {
     Variant variant = tests::run_of(tests::random_sequence(seed, folder.path()));
     variant.settings.regulator.policy = Policy::Budget;
     variant.settings.regulator.budget.polygons = 300 + 100 * (seed % 5);
