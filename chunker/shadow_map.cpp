@@ -22,7 +22,7 @@ using layers::dvec3;
 using layers::dvec4;
 
 constexpr float kNothing = std::numeric_limits<float>::infinity();
-constexpr double kWidestTan = 2.75;        // tan 70°: the most that one perspective map takes in
+constexpr double kWidestTan = kWidestShadowTan;
 constexpr double kNearShare = 1e-5;        // near plane, of the distance to the farthest caster
 constexpr double kSteepestTexels = 16;     // the slope's bias stops growing here
 constexpr double kLookupSample = 3.0 / 8;  // place in a texel of the one sample that decides

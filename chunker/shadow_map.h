@@ -34,6 +34,9 @@
 
 namespace talisman::chunker {
 
+/// tan 70°: the most that one perspective map takes in, from its axis.
+inline constexpr double kWidestShadowTan = 2.75;
+
 /// The picture of one direction of view from a light.
 struct ShadowFace {
   Rows34 map_from_world;      ///< orthographic: (x, y, z); else (x w, y w, w), z = w; x, y in texels

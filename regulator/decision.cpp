@@ -34,6 +34,17 @@ LayerDecision rerender(const LayerAssessment& layer, std::string reason) {
   return decision;
 }
 
+LayerDecision draw_on_beat(const LayerAssessment& layer, const std::string& policy) {
+  if (!layer.in_view) return drop(layer);
+  return rerender(layer, layer.has_sprite ? policy : "first_appearance");
+}
+
+LayerDecision wait_for_beat(const LayerAssessment& layer, const std::string& policy) {
+  LayerDecision decision = drop(layer);
+  if (layer.in_view) decision.reason = policy + ", first shown on the next beat";
+  return decision;
+}
+
 LayerDecision reuse(const LayerAssessment& layer, std::string reason) {
   const double error = layer.fiducials.geometric.px;
   LayerDecision decision{layer.layer, Action::Reuse, std::move(reason), layer.fitted.warp, error, error, {},

@@ -15,6 +15,10 @@ LayerDecision drop(const LayerAssessment& layer);
 LayerDecision rerender(const LayerAssessment& layer, std::string reason);
 /// The policies `direct` and `reference`: a fresh sprite, whatever there is.
 LayerDecision decide_every_frame(const LayerAssessment& layer, std::string reason);
+/// Hold and Interpolate: all that is in view is drawn on the beat, and what was not there then waits for the
+/// next one.
+LayerDecision draw_on_beat(const LayerAssessment& layer, const std::string& policy);
+LayerDecision wait_for_beat(const LayerAssessment& layer, const std::string& policy);
 /// The old sprite, carried by the fitted warp.
 LayerDecision reuse(const LayerAssessment& layer, std::string reason);
 /// The old sprite, left where it was.

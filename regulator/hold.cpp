@@ -4,11 +4,14 @@
 
 namespace talisman::regulator {
 
-/// All layers in lock step, every N-th frame; in between the sprite stays where it was. N = 3 is the triple
-/// framing of [LS97 7.2], whose error is a saw-tooth [LS97 Fig. 23].
-LayerDecision decide_hold(int frame, const LayerAssessment& layer, const RegulatorOptions& options) {
+/// All layers in lock step, every N-th frame; in between the picture is that of the beat, also of what has left
+/// the view since, and without what has come into view. N = 3 is the triple framing of [LS97 7.2], whose error
+/// is a saw-tooth [LS97 Fig. 23].
+LayerDecision decide_hold(const FrameBeat& beat, const LayerAssessment& layer,
+                          const RegulatorOptions& options) {
   const std::string policy = "policy: hold " + std::to_string(options.hold_frames);
-  return frame % options.hold_frames == 0 ? rerender(layer, policy) : reuse_in_place(layer, policy);
+  if (beat.is_now()) return draw_on_beat(layer, policy);
+  return beat.drew(layer) ? reuse_in_place(layer, policy) : wait_for_beat(layer, policy);
 }
 
 }  // namespace talisman::regulator

@@ -4,15 +4,16 @@
 
 namespace talisman::regulator {
 
-/// The same renders as `hold`, but between them the sprite is carried by the warp: "interpolated
+/// The same renders as `hold`, but between them each sprite is carried by its warp: "interpolated
 /// triple-framing" of [LS97 7.2]. Costs the same, looks far better. A sprite whose motion cannot be fitted at
-/// all is left in place.
-LayerDecision decide_interpolate(int frame, const LayerAssessment& layer, const RegulatorOptions& options) {
+/// all is left in place; what has left the view is not shown.
+LayerDecision decide_interpolate(const FrameBeat& beat, const LayerAssessment& layer,
+                                 const RegulatorOptions& options) {
   const std::string policy = "policy: interpolate " + std::to_string(options.hold_frames);
-  if (frame % options.hold_frames == 0) return rerender(layer, policy);
-  if (!layer.fitted.usable() || layer.matched_points < kFewestMatchedPoints)
-    return reuse_in_place(layer, policy + ", no warp");
-  return reuse(layer, policy);
+  if (beat.is_now()) return draw_on_beat(layer, policy);
+  if (!layer.in_view) return drop(layer);
+  if (!beat.drew(layer)) return wait_for_beat(layer, policy);
+  return has_sound_fit(layer) ? reuse(layer, policy) : reuse_in_place(layer, policy + ", no warp");
 }
 
 }  // namespace talisman::regulator

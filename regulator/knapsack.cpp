@@ -154,6 +154,24 @@ class Search {
   std::vector<State> history_;
 };
 
+constexpr int kNone = -1;
+
+/// `kept`, ascending, and then whatever fits, in the order given; but not the layer `given_up`.
+std::vector<int> fill_up(const std::vector<int>& kept, int given_up, std::span<const Candidate> order,
+                         const Budget& budget) {
+  const auto is_kept = [&](int layer) { return std::binary_search(kept.begin(), kept.end(), layer); };
+  Budget left = budget;
+  for (const Candidate& candidate : order)
+    if (is_kept(candidate.layer)) left = after(left, candidate.cost);
+  std::vector<int> chosen = kept;
+  for (const Candidate& candidate : order) {
+    if (candidate.layer == given_up || is_kept(candidate.layer) || !left.affords(candidate.cost)) continue;
+    left = after(left, candidate.cost);
+    chosen.push_back(candidate.layer);
+  }
+  return chosen;
+}
+
 }  // namespace
 
 Choice greedy_choice(std::span<const Candidate> candidates, const Budget& budget) {
@@ -167,6 +185,42 @@ Choice greedy_choice(std::span<const Candidate> candidates, const Budget& budget
     chosen.push_back(candidate.layer);
   }
   return choice_of(std::move(chosen), candidates);
+}
+
+Choice best_choice(std::span<const Candidate> candidates, const Budget& budget) {
+  std::vector<Candidate> by_ratio(candidates.begin(), candidates.end());
+  sort_by_benefit_per_cost(by_ratio, budget);
+  std::vector<Candidate> by_benefit = by_ratio;
+  std::stable_sort(by_benefit.begin(), by_benefit.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.benefit_px > b.benefit_px; });
+  Choice best = greedy_choice(candidates, budget);
+  const auto try_with = [&](const std::vector<int>& kept, int given_up) {
+    bool gained = false;
+    for (const std::vector<Candidate>* order : {&by_ratio, &by_benefit}) {
+      Choice filled = choice_of(fill_up(kept, given_up, *order, budget), candidates);
+      if (!(filled.benefit_px > best.benefit_px * (1 + 1e-12))) continue;
+      best = std::move(filled);
+      gained = true;
+    }
+    return gained;
+  };
+  const auto fits = [&](const Candidate& c) { return budget.affords(c.cost); };
+  const auto single = std::find_if(by_benefit.begin(), by_benefit.end(), fits);
+  if (single != by_benefit.end()) try_with({single->layer}, kNone);
+  for (bool gained = true; gained;) {
+    gained = false;
+    const std::vector<int> chosen = best.layers;
+    for (std::size_t i = 0; i < chosen.size() && !gained; ++i) {
+      std::vector<int> kept = chosen;
+      kept.erase(kept.begin() + static_cast<std::ptrdiff_t>(i));
+      gained = try_with(kept, chosen[i]);
+    }
+  }
+  return best;
+}
+
+Choice choose(ChoiceRule rule, std::span<const Candidate> candidates, const Budget& budget) {
+  return rule == ChoiceRule::Best ? best_choice(candidates, budget) : greedy_choice(candidates, budget);
 }
 
 Choice optimal_choice(std::span<const Candidate> candidates, const Budget& budget, std::size_t most_states) {
@@ -188,9 +242,11 @@ double BudgetGap::gap() const {
   return optimal_px > 0 ? std::max(0.0, (optimal_px - greedy_px) / optimal_px) : 0;
 }
 
-BudgetGap budget_gap(std::span<const Candidate> candidates, const Budget& budget, std::size_t most_states) {
+BudgetGap budget_gap(std::span<const Candidate> candidates, const Budget& budget, std::size_t most_states,
+                     ChoiceRule rule) {
   const Choice optimal = optimal_choice(candidates, budget, most_states);
-  return {greedy_choice(candidates, budget).benefit_px, optimal.benefit_px, optimal.exact};
+  const double chosen = choose(rule, candidates, budget).benefit_px;
+  return {chosen, std::max(chosen, optimal.benefit_px), optimal.exact};
 }
 
 double greedy_gap(std::span<const Candidate> candidates, const Budget& budget) {

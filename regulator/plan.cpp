@@ -3,12 +3,14 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <numbers>
 
 #include "layers/check.h"
 #include "regulator/budget.h"
 #include "regulator/decision.h"
 #include "regulator/policies.h"
+#include "regulator/shadow_maps.h"
 
 namespace talisman::regulator {
 
@@ -56,6 +58,14 @@ std::optional<Prediction> prediction_from_name(std::string_view text) {
   return std::nullopt;
 }
 
+std::string_view name(ChoiceRule rule) { return rule == ChoiceRule::Best ? "best" : "paper"; }
+
+std::optional<ChoiceRule> choice_rule_from_name(std::string_view text) {
+  for (const ChoiceRule rule : kAllChoiceRules)
+    if (name(rule) == text) return rule;
+  return std::nullopt;
+}
+
 std::string_view name(Action action) {
   switch (action) {
     case Action::Reuse:
@@ -70,7 +80,9 @@ std::string_view name(Action action) {
 
 namespace {
 
-LayerDecision decide(int frame, const LayerAssessment& layer, const RegulatorOptions& options) {
+LayerDecision decide(const FrameBeat& beat, const LayerAssessment& layer, const RegulatorOptions& options) {
+  if (options.policy == Policy::Hold) return decide_hold(beat, layer, options);
+  if (options.policy == Policy::Interpolate) return decide_interpolate(beat, layer, options);
   if (!layer.in_view) return drop(layer);
   if (options.policy == Policy::Direct) return decide_every_frame(layer, "policy: direct");
   if (!layer.has_sprite) return rerender(layer, "first_appearance");
@@ -78,31 +90,49 @@ LayerDecision decide(int frame, const LayerAssessment& layer, const RegulatorOpt
     case Policy::Direct:
     case Policy::Reference:
       return decide_every_frame(layer, "policy: reference");
-    case Policy::Hold:
-      return decide_hold(frame, layer, options);
-    case Policy::Interpolate:
-      return decide_interpolate(frame, layer, options);
     case Policy::Threshold:
     case Policy::Lookahead:  // whether to draw again; as of which instant is chosen with the states at hand
     case Policy::Oracle:
       return decide_threshold(layer, options);
-    case Policy::Budget:
-      break;  // decides over all layers at once
+    case Policy::Hold:
+    case Policy::Interpolate:  // decided above
+    case Policy::Budget:       // decides over all layers at once
+      break;
   }
   return {};
 }
 
 }  // namespace
 
+bool FrameBeat::drew(const LayerAssessment& layer) const {
+  return layer.has_sprite && layer.frames_since_render == std::abs(frame - last_beat);
+}
+
+bool keeps_beat(Policy policy) { return policy == Policy::Hold || policy == Policy::Interpolate; }
+
+FrameBeat regular_beat(int frame, const RegulatorOptions& options) {
+  return {frame, frame - frame % options.hold_frames};
+}
+
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options) {
   TALISMAN_CHECK_EQ(first_defect(options), std::string());
-  FramePlan plan{frame, {}};
+  return regulate(regular_beat(frame, options), assessments, options);
+}
+
+FramePlan regulate(const FrameBeat& beat, std::span<const LayerAssessment> assessments,
+                   const RegulatorOptions& options, std::span<const MapAssessment> maps) {
+  TALISMAN_CHECK_EQ(first_defect(options), std::string());
+  FramePlan plan{beat.frame, {}, {}};
   if (options.policy == Policy::Budget) {
-    plan.decisions = decide_budget(assessments, options);
+    BudgetDecisions decided = decide_budget(assessments, options, maps);
+    plan.decisions = std::move(decided.layers);
+    plan.maps = std::move(decided.maps);
     return plan;
   }
   plan.decisions.reserve(assessments.size());
-  for (const LayerAssessment& layer : assessments) plan.decisions.push_back(decide(frame, layer, options));
+  for (const LayerAssessment& layer : assessments) plan.decisions.push_back(decide(beat, layer, options));
+  plan.maps = decide_maps(maps, plan.decisions, options);
+  show_held_maps(maps, plan.maps, plan.decisions);
   return plan;
 }
 
@@ -127,6 +157,7 @@ std::string first_defect(const Thresholds& t) {
   if (std::isnan(t.uncovered_px)) return broken("uncovered_px", t.uncovered_px, "a number (negative: off)");
   if (!(t.turned_px >= 0)) return broken("turned_px", t.turned_px, "at least 0 (0: off)");
   if (!(t.photometric >= 0)) return broken("photometric", t.photometric, "at least 0 (0: off)");
+  if (!(t.shadow_map_px >= 0)) return broken("shadow_map_px", t.shadow_map_px, "at least 0");
   if (!(t.light_angle_rad >= 0 && t.light_angle_rad <= std::numbers::pi))
     return broken("light_angle_rad", t.light_angle_rad, "0 (off) to pi, which is 180 degrees");
   return {};
@@ -140,6 +171,8 @@ std::string first_defect(const BudgetOptions& b) {
   if (!(b.min_resolution > 0 && b.min_resolution <= 1))
     return broken("min_resolution", b.min_resolution, "above 0 and at most 1");
   if (!(b.cutoff_px >= 0)) return broken("cutoff_px", b.cutoff_px, "at least 0");
+  if (!(b.depth_complexity == 0 || (b.depth_complexity >= 1 && b.depth_complexity < HUGE_VAL)))
+    return broken("depth_complexity", b.depth_complexity, "0 (measured) or at least 1");
   return {};
 }
 

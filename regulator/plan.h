@@ -23,12 +23,13 @@ namespace talisman::regulator {
 enum class Policy {
   Direct,       ///< the whole scene in one pass, no sprites: the truth
   Reference,    ///< every layer, every frame, through sprites
-  Hold,         ///< every N frames; shown where it was in between (triple framing is N = 3)
-  Interpolate,  ///< every N frames, warped in between
+  Hold,         ///< every N frames; that picture stands in between (triple framing is N = 3) [LS97 7.2]
+  Interpolate,  ///< every N frames, each sprite warped in between
   Threshold,    ///< when a fiducial exceeds its threshold
   Budget,       ///< what gains most for its cost, until the frame's budget is spent
   Lookahead,    ///< as Threshold, but drawn as of the instant within N frames that serves longest
-  Oracle,       ///< as Lookahead over the whole sequence: the fewest renders under the same bound
+  Oracle,       ///< as Lookahead over the whole sequence: the fewest renders under the same bound (of renders
+                ///< alone: not of polygons or pixels)
 };
 inline constexpr std::array kAllPolicies = {Policy::Direct,      Policy::Reference, Policy::Hold,
                                             Policy::Interpolate, Policy::Threshold, Policy::Budget,
@@ -52,9 +53,9 @@ struct LayerCost {
 struct LayerAssessment {
   int layer = -1;
   bool in_view = false;
-  bool has_sprite = false;  ///< it was rendered before
-  bool identical = false;   ///< its state equals the state at its last render: reuse loses nothing
-  int frames_since_render = 0;
+  bool has_sprite = false;       ///< it was rendered before
+  bool identical = false;        ///< its state equals the state at its last render: reuse loses nothing
+  int frames_since_render = 0;   ///< valid if has_sprite
   int matched_points = 0;        ///< correspondences behind `fitted`; too few say nothing about the motion
   warp::FitResult fitted;        ///< valid if has_sprite
   fiducials::Report fiducials;   ///< valid if has_sprite
@@ -90,6 +91,9 @@ struct Thresholds {
                                ///< (square root of its area); 0: not regulated, and not computed
   double photometric = 0.05;   ///< > 0: shading may be this far off, linear light (1 is white), after the
                                ///< colour warp; 0: not regulated
+  double shadow_map_px =
+      0;  ///< ≥ 0: a sprite may be drawn from an old shadow map as long as the shadows that
+          ///< it casts are no farther off on the display; 0: never
   double light_angle_rad = 0;  ///< 0 … π: a light (or, for highlights, the eye) may have moved by this angle
                                ///< about the layer: the alternative for hardware without colour warp; 0:
                                ///< not regulated
@@ -105,6 +109,15 @@ struct LookaheadOptions {
   bool operator==(const LookaheadOptions&) const = default;
 };
 
+/// Policy Budget: how are the layers chosen that a frame draws (regulator/budget.h)?
+enum class ChoiceRule {
+  Paper,  ///< by benefit over cost until the budget is spent [LS97 6]; may be far from the best
+  Best,   ///< never worse than that, and half the best at least with one kind of budget; some µs more
+};
+inline constexpr std::array kAllChoiceRules = {ChoiceRule::Paper, ChoiceRule::Best};
+std::string_view name(ChoiceRule rule);  ///< "paper", "best"
+std::optional<ChoiceRule> choice_rule_from_name(std::string_view text);
+
 /// Policy Budget: what a frame may spend. More is drawn as a limit grows.
 struct BudgetOptions {
   std::int64_t polygons = kNoLimit;  ///< triangles per frame, ≥ 0
@@ -117,6 +130,11 @@ struct BudgetOptions {
   double cutoff_px = 0.004;  ///< ≥ 0; a layer whose benefit (regulator/budget.h) is not above it is never
                              ///< drawn again; the default is 1/1000 of a typical error of 4 px [LS97 6]; more
                              ///< leaves resources unspent
+  ChoiceRule choice = ChoiceRule::Paper;
+  double depth_complexity =
+      0;  ///< ≥ 1: pixels that are filled per texel of a sprite's rectangle, by which the
+          ///< pixels of budget.ms are divided [LS97 footnote 11]; 0: as measured on the
+          ///< layers drawn so far (sequences/pipeline/depth_complexity.h)
   bool operator==(const BudgetOptions&) const = default;
 };
 
@@ -139,22 +157,49 @@ struct LayerDecision {
   std::string reason;     ///< in words and numbers: "geometric 4.7 > 4 px", "first_appearance", "policy: hold
                           ///< 3", "out_of_view"
   warp::Warp shown_warp;  ///< carries the sprite as rendered to where it is shown; identity for a fresh one
-  double shown_geometric_px = 0;  ///< error of what is displayed; 0 for a fresh sprite
-  double warp_geometric_px = 0;   ///< error that the warp would have had (also when it was rejected)
-  LayerCost cost;                 ///< spent: zero unless rendered
+  double shown_geometric_px =
+      0;  ///< error of what is displayed; 0 for a fresh sprite, unless it is drawn from
+          ///< an old shadow map: then how far its shadow is off
+  double warp_geometric_px = 0;  ///< error that the warp would have had (also when it was rejected)
+  LayerCost cost;                ///< spent: zero unless rendered
   int depicts_frame = -1;  ///< the frame at whose instant the sprite was drawn; ahead of the frame it is
                            ///< shown in only with Lookahead and Oracle; -1 if nothing is shown or not known
   layers::dvec3 shown_color{1, 1, 1};  ///< multiplier of the sprite's colour, 0 … 1; 1 for a fresh sprite
   double resolution = 1;               ///< of the sprite shown, relative to what the layer's author asks for
   bool short_of_area = false;          ///< deferred for want of pixels or chunks
+  bool deferred = false;               ///< worth drawing, but the frame's budget did not suffice
+  bool over_budget = false;            ///< of these: dearer than the whole budget of a frame
 };
+
+struct MapAssessment;
 
 struct FramePlan {
   int frame = 0;
   std::vector<LayerDecision> decisions;  ///< by layer id
+  std::vector<LayerDecision> maps;       ///< of the shadow maps, in the order of their assessments
 };
 
+/// Hold and Interpolate draw on the beat: pictures, order and fades are those of the last beat, and what was out
+/// of view then waits for the next one.
+struct FrameBeat {
+  int frame = 0;      ///< that is planned
+  int last_beat = 0;  ///< the frame in which all layers were drawn; `frame`: they are drawn now
+  bool is_now() const { return last_beat == frame; }
+  /// Is the layer's sprite that of the last beat?
+  bool drew(const LayerAssessment& layer) const;
+};
+
+/// Do pictures stand from one beat to the next under this policy?
+bool keeps_beat(Policy policy);
+
+/// As if the run had begun at frame 0: a beat is every frame that hold_frames divides.
+FrameBeat regular_beat(int frame, const RegulatorOptions& options);
+
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options);
+/// The same where the last beat was another one, because the run began between two of them.
+/// `maps`: the shadow maps that these layers look up (regulator/shadow_maps.h).
+FramePlan regulate(const FrameBeat& beat, std::span<const LayerAssessment> assessments,
+                   const RegulatorOptions& options, std::span<const MapAssessment> maps = {});
 
 /// Do the options ask for the colour warp or a threshold of the light, whatever the policy?
 bool asks_for_light(const RegulatorOptions& options);

@@ -3,7 +3,7 @@
 
 /// The policies, one file each. Each answers for one layer that is in view and has been rendered before: draw
 /// it again, or show the old sprite? What is common to all (layers out of view, first appearances) is decided
-/// in plan.cpp.
+/// in plan.cpp; Hold and Interpolate, which have a beat, answer for every layer.
 
 #include <string>
 
@@ -11,8 +11,11 @@
 
 namespace talisman::regulator {
 
-LayerDecision decide_hold(int frame, const LayerAssessment& layer, const RegulatorOptions& options);
-LayerDecision decide_interpolate(int frame, const LayerAssessment& layer, const RegulatorOptions& options);
+/// `beat`: when all layers were drawn last (FrameBeat); the layer may have no sprite of that beat.
+LayerDecision decide_hold(const FrameBeat& beat, const LayerAssessment& layer,
+                          const RegulatorOptions& options);
+LayerDecision decide_interpolate(const FrameBeat& beat, const LayerAssessment& layer,
+                                 const RegulatorOptions& options);
 LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options);
 
 /// Why the old sprite, carried by the fitted warp, is not good enough ("geometric 4.7 > 4 px"); empty if it

@@ -70,6 +70,8 @@ void apply_limits(const CommandLine& line, regulator::RegulatorOptions& options)
   if (line.budget_ms) options.budget.ms = *line.budget_ms;
   if (line.min_resolution) options.budget.min_resolution = *line.min_resolution;
   if (line.cutoff_px) options.budget.cutoff_px = *line.cutoff_px;
+  if (!line.choice.empty()) options.budget.choice = choice("--choice", line.choice, kChoiceRuleWords);
+  if (line.depth_complexity) options.budget.depth_complexity = *line.depth_complexity;
 }
 
 void apply_thresholds(const CommandLine& line, regulator::RegulatorOptions& options) {
@@ -77,6 +79,7 @@ void apply_thresholds(const CommandLine& line, regulator::RegulatorOptions& opti
   if (line.photometric) options.thresholds.photometric = *line.photometric;
   if (line.light_angle_deg) options.thresholds.light_angle_rad = glm::radians(*line.light_angle_deg);
   if (line.turned_px) options.thresholds.turned_px = *line.turned_px;
+  if (line.shadow_map_px) options.thresholds.shadow_map_px = *line.shadow_map_px;
   if (!line.color_warp.empty()) options.color_warp = choice("--color-warp", line.color_warp, kSwitchWords);
 }
 

@@ -19,9 +19,10 @@ struct CommandLine {
   std::string out;     ///< empty: out/<name>, for plans out/<name>-plan
   std::string frames;  ///< "A-B", "A" or empty: all; inclusive
   std::string size;    ///< "WxH"
-  std::string policy, predict, warp, bound, cycles, compositor, shading, format = "png", progress = "auto";
+  std::string policy, predict, choice, warp, bound, cycles, compositor, shading, format = "png",
+                                                                                 progress = "auto";
   std::optional<double> geometric_px, cutoff_px, budget_ms, min_resolution, expected_reuse, resolution;
-  std::optional<double> photometric, light_angle_deg, turned_px;
+  std::optional<double> photometric, light_angle_deg, turned_px, shadow_map_px, depth_complexity;
   std::string color_warp;  ///< "on", "off"
   std::optional<int> hold, lookahead, material_points;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says

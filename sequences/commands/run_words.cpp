@@ -44,6 +44,8 @@ void add_thresholds(CLI::App& command, CommandLine& line) {
               "threshold of the photometric fiducial, linear light, 1 is white; 0: not regulated")
       .option("--light-angle-deg", line.light_angle_deg,
               "threshold of the angle by which a light moves about a layer; 0: not regulated")
+      .option("--shadow-map-px", line.shadow_map_px,
+              "how far shadows may be off because their map is old, pixels; 0: maps are never old")
       .option("--turned-px", line.turned_px,
               "threshold of the size of a side that has turned to the eye, pixels; 0: not regulated");
 }
@@ -61,8 +63,13 @@ void add_budget(CLI::App& command, CommandLine& line) {
               "policy budget: least resolution of sprites that must fit, (0, 1]; 1: never lowered")
       .option("--cutoff-px", line.cutoff_px,
               "policy budget: benefit up to which a layer is not drawn again, pixels")
+      .option("--choice", line.choice,
+              "policy budget: paper (by benefit over cost) or best (never worse, half the best at least)")
+      .option(
+          "--depth-complexity", line.depth_complexity,
+          "policy budget: pixels filled per texel, by which those of --budget-ms are divided; 0: measured")
       .flag("--budget-gap", line.budget_gap,
-            "policy budget: also report the best choice of each frame, and what greedy misses");
+            "policy budget: also report the best choice of each frame, and what the choice misses");
 }
 
 void add_layers(CLI::App& command, CommandLine& line) {

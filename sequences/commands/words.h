@@ -71,6 +71,7 @@ Words<T, N> words_of(const std::array<T, N>& values) {
 
 inline const auto kPolicyWords = words_of(regulator::kAllPolicies);
 inline const auto kPredictionWords = words_of(regulator::kAllPredictions);
+inline const auto kChoiceRuleWords = words_of(regulator::kAllChoiceRules);
 
 /// "a, b<last>c".
 template <typename T, std::size_t N>

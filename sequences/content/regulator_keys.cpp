@@ -29,6 +29,11 @@ Format<regulator::Prediction> prediction() {
   return choice<regulator::Prediction>({{"known", Known}, {"linear", Linear}});
 }
 
+Format<regulator::ChoiceRule> choice_rule() {
+  using enum regulator::ChoiceRule;
+  return choice<regulator::ChoiceRule>({{"paper", Paper}, {"best", Best}});
+}
+
 Format<int> amount() { return whole(0, std::numeric_limits<int>::max()); }
 
 Table<LookaheadOptions> lookahead_keys() {
@@ -55,7 +60,15 @@ Table<BudgetOptions> budget_keys() {
       .key("min_resolution", &B::min_resolution, number({0, 1, true}), "",
            "policy budget: how far sprites may be drawn coarser to fit; 1: never")
       .key("cutoff_px", &B::cutoff_px, number(kNotNegative), "px",
-           "policy budget: a layer whose benefit is not above it is not drawn again");
+           "policy budget: a layer whose benefit is not above it is not drawn again")
+      .key("choice", &B::choice, choice_rule(), "",
+           "policy budget: by benefit over cost as in the paper, or never worse than that and half the best "
+           "at "
+           "least")
+      .key("depth_complexity", &B::depth_complexity, zero_or(kStretch), "1",
+           "policy budget: pixels filled per texel of a sprite, by which the pixels of budget_ms are "
+           "divided; 0: "
+           "as measured");
 }
 
 Table<Thresholds> threshold_keys() {
@@ -78,6 +91,10 @@ Table<Thresholds> threshold_keys() {
       .key("photometric", &T::photometric, number(kNotNegative), "1",
            "shading may be this far off at any characteristic point, after the colour warp; linear light, 1 "
            "is white; 0: not regulated")
+      .key(
+          "shadow_map_px", &T::shadow_map_px, number(kNotNegative), "px",
+          "policy threshold: shadows may be this far off because their map is old when a sprite is drawn; 0: "
+          "maps are never old")
       .key("light_angle_deg", &T::light_angle_rad, degrees({0, 180}), "°",
            "a light (or, for highlights, the eye) may have moved by this about the layer: the alternative "
            "for hardware without colour warp; 0: not regulated");

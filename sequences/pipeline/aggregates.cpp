@@ -281,7 +281,7 @@ void remember_order(const Pipeline& pipeline, PipelineState& state, int frame, c
   for (const Merger& merger : order.mergers)
     memory.slots[merger.layer - authored_count(pipeline)].last_seen = frame;
   for (std::size_t k = 0; k < memory.slots.size(); ++k) {
-    if (memory.slots[k].is_free || memory.slots[k].last_seen + kKeepAggregate_frames != frame) continue;
+    if (memory.slots[k].is_free || memory.slots[k].last_seen + kKeepAggregate_frames > frame) continue;
     const int id = authored_count(pipeline) + static_cast<int>(k);
     memory.slots[k].is_free = true;
     state.memory[id] = {};
@@ -349,6 +349,16 @@ FrameOrder order_layers(const Pipeline& pipeline, PipelineState& state, int fram
   note_splits(state.order.merged_into, order);
   remember_order(pipeline, state, frame, order);
   order.sort_ms = watch.ms();
+  return order;
+}
+
+FrameOrder standing_order(const FrameOrder& of_beat) {
+  FrameOrder order = of_beat;
+  order.sorted = false;
+  order.counters = {};
+  order.merged_parts = 0;
+  order.split_from.assign(order.merged_into.size(), -1);
+  order.sort_ms = 0;
   return order;
 }
 

@@ -40,6 +40,10 @@ bool exists_now(const PipelineState& state, int layer);
 /// Cost: layers/visibility.h.
 FrameOrder order_layers(const Pipeline& pipeline, PipelineState& state, int frame);
 
+/// The order of an earlier frame as it stands in a later one (policies Hold and Interpolate): nothing was sorted,
+/// merged or split.
+FrameOrder standing_order(const FrameOrder& of_beat);
+
 /// The layers that have a line in decisions.jsonl for this frame, in their order: the author's by id, then
 /// the aggregates that exist by serial number.
 std::vector<int> layers_with_lines(const PipelineState& state, const FrameReport& report);

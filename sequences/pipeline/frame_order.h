@@ -41,6 +41,7 @@ struct ResolvedCounters {
   int components = 0;  ///< expressions, each of a component that `over` alone would have merged
   int layers = 0;      ///< that have own sprites for it
   int registers = 0;   ///< images that one of them keeps at once, at most
+  int operators = 0;   ///< that are evaluated, each over an image; laying the result over the frame is one
   int reads = 0;       ///< of sprites, all together; `over` alone reads each once
   bool operator==(const ResolvedCounters&) const = default;
 };

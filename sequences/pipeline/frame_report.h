@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "chunker/composite.h"
@@ -40,22 +41,35 @@ struct ShownSprite {
   std::optional<double> beside_base_px{};
 };
 
+/// A shadow map as a row of the tables, beside the layers.
+struct ShadowMapRow {
+  std::string name;  ///< "shadow map of sun"; that of no layer
+  int light = -1;    ///< index into Scene::lights
+  regulator::LayerAssessment assessment;
+  regulator::LayerDecision decision;  ///< its cost is that of all pictures drawn for this frame
+  int parts = 0;                      ///< that cast
+  int pictures = 0;                   ///< drawn for this frame; more than one only with Lookahead and Oracle
+  layers::ivec2 size_px{0, 0};
+};
+
 struct FrameReport {
   int frame = 0;
   LayerTable layers;  ///< that the ids of this report mean
   FrameOrder order;
   regulator::FramePlan plan;
   std::vector<regulator::LayerAssessment>
-      assessments;                    ///< by layer id, aggregates behind the author's layers
-  std::vector<ShownSprite> shown;     ///< back to front
-  int layers_assessed = 0;            ///< in view with an old sprite: fitted and judged
-  std::int64_t pixels_reference = 0;  ///< texels that `reference` would render for this frame
-  chunker::RenderCounters render;     ///< summed over the layers rendered for this frame
+      assessments;                 ///< by layer id, aggregates behind the author's layers
+  std::vector<ShownSprite> shown;  ///< back to front
+  int layers_assessed = 0;         ///< in view with an old sprite: fitted and judged
+  regulator::LayerCost reference;  ///< polygons and pixels that `reference` would render for this frame
+  chunker::RenderCounters render;  ///< summed over the layers rendered for this frame
   std::vector<chunker::RenderCounters> render_by_layer;  ///< by layer id; zero where nothing was drawn
   chunker::CompositeCounters composite;
   std::optional<CompressionReport> compression;  ///< of the sprites drawn for this frame, and of its reads
   std::int64_t sprite_bytes = 0;                 ///< of the sprites shown, as they are stored
   ShadeCounters shade;                           ///< passes behind shadows and reflections, as planned
+  std::vector<ShadowMapRow> shadow_maps;         ///< one per light that has a map
+  double depth_complexity = 1;                   ///< by which a budget of ms was divided
   int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   StageTimes times;

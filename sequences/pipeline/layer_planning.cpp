@@ -2,6 +2,7 @@
 #include "sequences/pipeline/layer_planning.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 
 #include "fiducials/fiducials.h"
@@ -13,6 +14,7 @@
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/light_planning.h"
 #include "sequences/pipeline/motion_blur.h"
+#include "sequences/pipeline/shadow_map_planning.h"
 #include "warp/quadrilateral.h"
 
 namespace talisman::sequences {
@@ -56,12 +58,16 @@ SpritePlacement place_layer(const Pipeline& pipeline, const LayerTable& layers, 
 }
 
 /// The cost before the placement is known: the part of the layer's bounds that is on the display.
-regulator::LayerCost estimated_cost(const Layer& layer, const LayerState& now) {
+regulator::LayerCost estimated_cost(const Pipeline& pipeline, const LayerTable& layers,
+                                    const LayerState& now) {
+  const Layer& layer = layers[now.layer];
   const layers::RectD display{{0, 0}, layers::dvec2(now.view.display_px)};
   const layers::RectD seen = layers::intersection(now.screen_bounds_px, display);
   const double scale = own_resolution(layer);
-  return cost_of(layer,
-                 {static_cast<int>(seen.width() * scale + 1), static_cast<int>(seen.height() * scale + 1)});
+  SpritePlacement placement;
+  placement.size_px = {static_cast<int>(seen.width() * scale + 1),
+                       static_cast<int>(seen.height() * scale + 1)};
+  return cost_of(pipeline, layers, layer.id, placement);
 }
 
 /// For how many frames a new sprite of the layer will probably be moved by a warp: at most what the policy
@@ -139,7 +145,14 @@ CapturedFrame& captured_frame(PipelineState& state, int frame) {
   return it->second;
 }
 
-/// The scene of a frame as far as it is known now.
+/// Does the picture of that beat stand in `frame`?
+bool continues(const Pipeline& pipeline, const BeatMemory& beat, int frame) {
+  const int period = pipeline.settings.regulator.hold_frames;
+  return frame % period != 0 && frame / period == beat.frame / period;
+}
+
+}  // namespace
+
 SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, int frame) {
   const bool is_ahead = state.motion && frame > state.motion->frame;
   return is_ahead
@@ -147,15 +160,16 @@ SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, 
              : scene_at(pipeline, frame);
 }
 
-}  // namespace
-
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
+  if (!state.authored.is_copy_of(pipeline.authored)) state.beat.reset();
   adopt_layers(pipeline, state);
   const Policy policy = pipeline.settings.regulator.policy;
   auto& captured = state.captured;
   if (state.planned_with != pipeline.settings.regulator || predicts(pipeline))
     forget(state, captured.begin(), captured.end());
+  if (state.planned_with != pipeline.settings.regulator) state.beat.reset();
   state.planned_with = pipeline.settings.regulator;
+  if (state.beat && !continues(pipeline, *state.beat, frame)) state.beat.reset();
   state.now = frame;
   state.motion.reset();
   if (predicts(pipeline)) {
@@ -205,14 +219,21 @@ const SpritePlacement& captured_placement(const Pipeline& pipeline, PipelineStat
 }
 
 void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
-                     std::vector<LayerAssessment>& assessments) {
-  regulator::regulate_resolutions(assessments, pipeline.settings.regulator);
-  for (LayerAssessment& layer : assessments) {
+                     const regulator::RegulatorOptions& options, std::vector<LayerAssessment>& assessments,
+                     std::vector<regulator::MapAssessment>& maps) {
+  std::vector<LayerAssessment> all = assessments;
+  for (const regulator::MapAssessment& map : maps) all.push_back(map.map);
+  regulator::regulate_resolutions(all, options);
+  for (std::size_t i = 0; i < assessments.size(); ++i) {
+    LayerAssessment& layer = assessments[i];
+    layer.resolution = all[i].resolution;
     if (!layer.in_view || layer.resolution == 1) continue;
     std::optional<SpritePlacement>& placement = state.captured.at(frame).placements[layer.layer];
     placement = place_regulated(pipeline, state, layer.layer, frame, layer.resolution);
-    layer.cost = cost_of(state.layers[layer.layer], placement->size_px);
+    layer.cost = cost_of(pipeline, state.layers, layer.layer, *placement);
   }
+  for (std::size_t k = 0; k < maps.size(); ++k)
+    set_resolution(pipeline, all[assessments.size() + k].resolution, maps[k]);
 }
 
 SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTable& layers,
@@ -220,14 +241,44 @@ SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTa
   return place_layer(pipeline, layers, now, now, 0);
 }
 
-regulator::LayerCost cost_of(const Layer& layer, layers::ivec2 size_px) {
+SpritePlacement mirrored_placement(const SpritePlacement& sprite, int max_sprite_px) {
+  const layers::Affine2& m = sprite.screen_from_sprite;
+  layers::RectD bounds;
+  for (const layers::dvec2& corner :
+       {layers::dvec2{0, 0}, layers::dvec2{1, 0}, layers::dvec2{0, 1}, layers::dvec2{1, 1}})
+    bounds.include(m(corner * layers::dvec2(sprite.size_px)));
+  const double texel_px = std::sqrt(std::fabs(m.determinant()));
+  const double step = std::max({texel_px, bounds.width() / max_sprite_px, bounds.height() / max_sprite_px});
+  // One texel more on each side, and texels on pixels where their densities are equal.
+  const layers::dvec2 lo = step * (glm::floor(bounds.lo / step) - 1.0);
+  const layers::dvec2 count = glm::ceil((bounds.hi - lo) / step) + 1.0;
+  SpritePlacement placement;
+  placement.screen_from_sprite = {step, 0, lo.x, 0, step, lo.y};
+  placement.size_px = layers::ivec2(count);
+  return placement;
+}
+
+namespace {
+
+void add_area(layers::ivec2 size_px, std::int64_t times, regulator::LayerCost& cost) {
   constexpr int kChunk = chunker::kChunkSize;
   const std::int64_t w = std::max(size_px.x, 0), h = std::max(size_px.y, 0);
+  cost.pixels += times * w * h;
+  cost.chunks += times * ((w + kChunk - 1) / kChunk) * ((h + kChunk - 1) / kChunk);
+}
+
+}  // namespace
+
+regulator::LayerCost cost_of(const Pipeline& pipeline, const LayerTable& layers, int layer,
+                             const SpritePlacement& placement) {
   regulator::LayerCost cost;
-  cost.polygons = layer.polygons;
-  cost.pixels = w * h;
-  cost.chunks = ((w + kChunk - 1) / kChunk) * ((h + kChunk - 1) / kChunk);
+  cost.polygons = layers[layer].polygons;
+  add_area(placement.size_px, 1, cost);
   cost.bytes = cost.chunks * static_cast<std::int64_t>(sizeof(chunker::Chunk));
+  const std::size_t mirrors = placement.empty() ? 0 : mirrors_in(layers.set(), layers[layer]).size();
+  if (mirrors > 0)
+    add_area(mirrored_placement(placement, pipeline.settings.placement.max_sprite_px).size_px,
+             static_cast<std::int64_t>(mirrors), cost);
   return cost;
 }
 
@@ -259,6 +310,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));
   assessment.held_geometric_px += assessment.fiducials.shade.px;
+  if (matched.then_px.empty() && !assessment.identical) assessment.held_geometric_px = warp::kHugePx;
   return assessment;
 }
 
@@ -267,20 +319,23 @@ LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int
   const LayerMemory& memory = state.memory[layer_id];
   const LayerState& now = captured_states(pipeline, state, frame)[layer_id];
   LayerAssessment assessment;
-  if (now.touches_display && memory.then)
+  const bool is_held = pipeline.settings.regulator.policy == Policy::Hold;  // shown, in view or not
+  if ((now.touches_display || is_held) && memory.then)
     assessment = assess_sprite(pipeline, state.layers, *memory.then, memory.placement, now,
                                std::abs(frame - memory.frame_rendered));
+  if (memory.then) assessment.frames_since_render = std::abs(frame - memory.frame_rendered);
   assessment.layer = layer.id;
   assessment.frames_short_of_area = memory.frames_short_of_area;
   see_through_resolution(assessment, memory.resolution);
   assessment.preferences = layer.preferences;
   assessment.in_view = now.touches_display;
   assessment.has_sprite = memory.then.has_value();
+  assessment.identical = assessment.identical && !memory.has_old_shadows;
   if (!assessment.in_view) return assessment;
   const bool must_be_exact = pipeline.settings.regulator.policy == Policy::Budget;
-  assessment.cost = must_be_exact
-                        ? cost_of(layer, captured_placement(pipeline, state, layer_id, frame).size_px)
-                        : estimated_cost(layer, now);
+  assessment.cost = must_be_exact ? cost_of(pipeline, state.layers, layer_id,
+                                            captured_placement(pipeline, state, layer_id, frame))
+                                  : estimated_cost(pipeline, state.layers, now);
   return assessment;
 }
 

@@ -6,6 +6,7 @@
 
 #include <vector>
 
+#include "regulator/shadow_maps.h"
 #include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
@@ -17,6 +18,9 @@ bool looks_ahead(const Pipeline& pipeline);
 bool predicts(const Pipeline& pipeline);
 
 double time_of(const Pipeline& pipeline, int frame);
+
+/// The scene of a frame as far as it is known in the frame that is planned.
+layers::SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, int frame);
 
 /// The scene at `frame` as it is known or, where frames ahead are predicted, as it is expected in frame
 /// `known` ≤ `frame` from that frame and the one before.
@@ -38,16 +42,24 @@ const std::vector<layers::LayerState>& captured_states(const Pipeline& pipeline,
 const layers::SpritePlacement& captured_placement(const Pipeline& pipeline, PipelineState& state, int layer,
                                                   int frame);
 
-/// Step 6 of [LS97 6], policy Budget: chooses the resolution of every layer in view, and computes placement
-/// and cost again where it is not 1.
+/// Step 6 of [LS97 6], policy Budget: chooses the resolution of every layer in view and of the shadow maps, and
+/// computes placement and cost again where it is not 1. `options`: the budget of this frame.
 void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
-                     std::vector<regulator::LayerAssessment>& assessments);
+                     const regulator::RegulatorOptions& options,
+                     std::vector<regulator::LayerAssessment>& assessments,
+                     std::vector<regulator::MapAssessment>& maps);
 
 /// The same without growth: as the policy `reference` draws it.
 layers::SpritePlacement placement_without_growth(const Pipeline& pipeline, const LayerTable& layers,
                                                  const layers::LayerState& now);
 
-regulator::LayerCost cost_of(const layers::Layer& layer, layers::ivec2 size_px);
+/// Where the picture lies that a mirror shows in such a sprite: an upright rectangle of the display around it, as
+/// dense as the sprite is.
+layers::SpritePlacement mirrored_placement(const layers::SpritePlacement& sprite, int max_sprite_px);
+
+/// What drawing the layer into such a sprite costs; pixels and chunks count those of mirrored pictures, too.
+regulator::LayerCost cost_of(const Pipeline& pipeline, const LayerTable& layers, int layer,
+                             const layers::SpritePlacement& placement);
 
 /// What showing at `now` the sprite as rendered at `then` with `placement` is worth. The layer is in view.
 regulator::LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers,

@@ -64,8 +64,10 @@ struct LayerMemory {
   int frame_rendered = -1;  ///< when the work was done
   int depicts_frame = -1;   ///< as of which instant `then` is; later (or earlier) with Lookahead and Oracle
   bool drawn = false;       ///< the sprite store holds that picture (false: planned only)
-  double resolution = 1;    ///< of the sprite, relative to what the layer's author asks for
-  bool predicted = false;   ///< `then` was extrapolated in frame_rendered, it is not the scene's own motion
+  std::vector<ShadowMapInstant> maps;  ///< that it looks up, where those are not simply of its own instant
+  bool has_old_shadows = false;        ///< one of them was out of date already when it was drawn
+  double resolution = 1;               ///< of the sprite, relative to what the layer's author asks for
+  bool predicted = false;  ///< `then` was extrapolated in frame_rendered, it is not the scene's own motion
   int frames_short_of_area = 0;  ///< frames in a row in which it was deferred for want of pixels or chunks
 };
 
@@ -84,6 +86,18 @@ struct MotionKnown {
   layers::SceneFrame before, now;  ///< `before` is `now` at frame 0
 };
 
+/// Policies Hold and Interpolate: what stands from the last beat to the next [LS97 7.2].
+struct BeatMemory {
+  int frame = 0;  ///< of that beat
+  FrameOrder order;
+};
+
+/// How often a texel of a sprite is filled, from the sprites measured (sequences/pipeline/depth_complexity.h).
+struct DepthMemory {
+  double filled = 0, texels = 0;
+  double complexity() const { return texels > 0 && filled > texels ? filled / texels : 1; }
+};
+
 /// All that survives a frame.
 struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline)
@@ -94,8 +108,11 @@ struct PipelineState {
   chunker::SpriteStore sprites;     ///< as the compositor shows them: decompressed if they are compressed
   CompressedSprites compressed;     ///< empty unless Settings::compression asks for it
   OrderMemory order;
-  ShadePlan shade_plan;
+  std::optional<BeatMemory> beat;     ///< empty unless the policy keeps one
+  std::vector<ShadowMapMemory> maps;  ///< by light; empty where no shadow is called for
+  ShadePlan reference_shades;         ///< of the policy `reference`: the yardstick of what is saved
   ShadowMapStore shadow_maps;
+  DepthMemory depth;
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
   std::vector<CapturedFrame> forgotten;   ///< were captured; the next ones are captured in their memory
   int now = 0;                            ///< the frame that is planned: what lies ahead may be a prediction

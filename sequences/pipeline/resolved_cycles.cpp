@@ -67,6 +67,9 @@ ResolvedCounters FrameOrder::resolved_counters() const {
     sum.layers += static_cast<int>(cycle.layers.size());
     sum.registers = std::max(sum.registers, cycle.expression.registers);
     sum.reads += cycle.expression.reads;
+    for (const layers::CompositeExpression::Node& node : cycle.expression.nodes)
+      sum.operators += node.op != layers::CompositeExpression::Operator::Layer;
+    ++sum.operators;  // over the frame
   }
   return sum;
 }

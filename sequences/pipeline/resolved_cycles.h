@@ -19,7 +19,8 @@
 ///
 /// What it saves is rendering: sprites of members that move little are warped on, and whoever moves is drawn
 /// alone. What it costs is in the compositor: out and plus beside over, two image registers of the size of a
-/// picture (or of a band), and one more read of a sprite for each pair of layers that is related. Talisman's
+/// picture (or of a band), and one more read of a sprite for each pair of layers that is related. In modelled time
+/// each operator costs the compositor as many pixels as its image has, besides the reads of sprites. Talisman's
 /// compositor has none of this.
 
 #include <optional>

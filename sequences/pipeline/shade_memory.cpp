@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/pipeline/shade_memory.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "layers/animation.h"
 #include "layers/built_effects.h"
 
@@ -17,13 +20,17 @@ using layers::SceneFrame;
 constexpr bool kShadows = layers::is_built(layers::Effect::ShadowMap);
 constexpr bool kMirrors = layers::is_built(layers::Effect::ReflectionMap);
 
+}  // namespace
+
 std::int64_t casting_polygons(const Scene& scene, const LayerSet& set) {
   std::int64_t polygons = 0;
   for (const int part : set.casting_parts) polygons += scene.meshes[scene.parts[part].mesh].triangle_count();
   return polygons;
 }
 
-}  // namespace
+int map_resolution_px(const layers::Light& light, double resolution) {
+  return std::max(1, static_cast<int>(std::lround(light.shadow.resolution_px * resolution)));
+}
 
 std::vector<const Layer*> mirrors_in(const LayerSet& set, const Layer& layer) {
   std::vector<const Layer*> mirrors;
@@ -64,11 +71,13 @@ ShadeCounters& ShadeCounters::operator+=(const ShadeCounters& o) {
   shadow_maps_reused += o.shadow_maps_reused;
   reflections_drawn += o.reflections_drawn;
   shadow_polygons += o.shadow_polygons;
+  shadow_pixels += o.shadow_pixels;
   return *this;
 }
 
 void ShadePlan::add_render(const Scene& scene, const LayerSet& set, const Layer& layer,
-                           const std::vector<ShadowMapKey>& keys, ShadeCounters& counters) {
+                           const std::vector<ShadowMapKey>& keys, const std::vector<ShadowMapCost>& costs,
+                           ShadeCounters& counters) {
   counters.reflections_drawn += static_cast<int>(mirrors_in(set, layer).size());
   for (const int light : shadow_lights(scene, set, layer)) {
     drawn_.resize(keys.size());
@@ -77,18 +86,23 @@ void ShadePlan::add_render(const Scene& scene, const LayerSet& set, const Layer&
       continue;
     }
     ++counters.shadow_maps_drawn;
-    counters.shadow_polygons += casting_polygons(scene, set);
+    counters.shadow_polygons += costs[light].polygons;
+    counters.shadow_pixels += costs[light].pixels;
     drawn_[light] = keys[light];
   }
 }
 
 const chunker::ShadowMap* ShadowMapStore::find(const Scene& scene, const LayerSet& set,
-                                               const SceneFrame& frame, int light, const ShadowMapKey& key) {
+                                               const SceneFrame& frame, int light, const ShadowMapKey& key,
+                                               double resolution) {
   maps_.resize(scene.lights.size());
   Entry& entry = maps_[light];
-  if (!entry.drawn || !(entry.key == key)) {
-    entry.map = chunker::make_shadow_map(frame, light, set.casting_parts);
+  if (!entry.drawn || !(entry.key == key) || entry.resolution != resolution) {
+    layers::ShadowMapOptions options = scene.lights[light].shadow;
+    options.resolution_px = map_resolution_px(scene.lights[light], resolution);
+    entry.map = chunker::make_shadow_map(frame, light, set.casting_parts, options);
     entry.key = key;
+    entry.resolution = resolution;
     entry.drawn = true;
   }
   return &entry.map;

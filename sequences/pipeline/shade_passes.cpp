@@ -10,6 +10,7 @@
 #include "chunker/mirror.h"
 #include "layers/animation.h"
 #include "layers/built_effects.h"
+#include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/shade_ratio.h"
 
 namespace talisman::sequences {
@@ -67,11 +68,17 @@ chunker::LightsHeld lights_of(const Layer& layer) {
 std::vector<const chunker::ShadowMap*> maps_for(const Drawing& drawing, const std::vector<int>& lights) {
   std::vector<const chunker::ShadowMap*> by_light;
   if (lights.empty()) return by_light;
-  const auto& [pipeline, layers, maps, prepared, frame] = drawing;
+  const auto& [pipeline, layers, maps, prepared, frame, held] = drawing;
   const std::vector<ShadowMapKey> keys = shadow_map_keys(pipeline.scene, layers.set(), frame);
   by_light.resize(keys.size(), nullptr);
-  for (const int light : lights)
-    by_light[light] = maps.find(pipeline.scene, layers.set(), frame, light, keys[light]);
+  for (const int light : lights) {
+    const auto old = std::find_if(held.begin(), held.end(), [&](auto& h) { return h.light == light; });
+    by_light[light] =
+        old == held.end()
+            ? maps.find(pipeline.scene, layers.set(), frame, light, keys[light])
+            : maps.find(pipeline.scene, layers.set(), *old->frame, light,
+                        shadow_map_keys(pipeline.scene, layers.set(), *old->frame)[light], old->resolution);
+  }
   return by_light;
 }
 
@@ -102,23 +109,6 @@ std::vector<int> parts_before(const Drawing& drawing, const Layer& layer, const 
   return parts;
 }
 
-/// An upright rectangle of the display around a sprite, as dense as the sprite is.
-SpritePlacement around(const SpritePlacement& sprite, int max_sprite_px) {
-  const Affine2& m = sprite.screen_from_sprite;
-  layers::RectD bounds;
-  for (const dvec2& corner : {dvec2{0, 0}, dvec2{1, 0}, dvec2{0, 1}, dvec2{1, 1}})
-    bounds.include(m(corner * dvec2(sprite.size_px)));
-  const double texel_px = std::sqrt(std::fabs(m.determinant()));
-  const double step = std::max({texel_px, bounds.width() / max_sprite_px, bounds.height() / max_sprite_px});
-  // One texel more on each side, and texels on pixels where their densities are equal.
-  const dvec2 lo = step * (glm::floor(bounds.lo / step) - 1.0);
-  const dvec2 count = glm::ceil((bounds.hi - lo) / step) + 1.0;
-  SpritePlacement placement;
-  placement.screen_from_sprite = {step, 0, lo.x, 0, step, lo.y};
-  placement.size_px = layers::ivec2(count);
-  return placement;
-}
-
 /// A picture of what `layer` mirrors, with the map that finds it.
 struct Mirrored {
   chunker::RenderResult picture;
@@ -126,11 +116,11 @@ struct Mirrored {
 };
 
 Mirrored draw_mirrored(const Drawing& drawing, const Layer& layer, const SpritePlacement& placement) {
-  const auto& [pipeline, layers, maps, prepared, frame] = drawing;
+  const auto& [pipeline, layers, maps, prepared, frame, held] = drawing;
   Mirrored mirrored;
   const WorldPlane mirror = mirror_of(frame, layer);
   if (placement.empty() || !std::isfinite(mirror.height({0, 0, 0}))) return mirrored;
-  const SpritePlacement wide = around(placement, pipeline.settings.placement.max_sprite_px);
+  const SpritePlacement wide = mirrored_placement(placement, pipeline.settings.placement.max_sprite_px);
   const std::optional<Affine2> picture_from_screen = inverse(wide.screen_from_sprite);
   if (!picture_from_screen) return mirrored;
   ShadeInputs inputs;

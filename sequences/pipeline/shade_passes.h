@@ -32,6 +32,7 @@ struct Drawing {
   ShadowMapStore& maps;
   const chunker::PreparedScene& prepared;
   const layers::SceneFrame& frame;
+  std::span<const HeldMap> held = {};  ///< lights whose maps are not simply those of `frame`
 };
 
 /// The layer's term of the shading through `placement`. The counters are those of the sprite and of the

@@ -8,12 +8,14 @@
 #include "layers/check.h"
 #include "layers/effects.h"
 #include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/depth_complexity.h"
 #include "sequences/pipeline/direct_picture.h"
 #include "sequences/pipeline/draw_instant.h"
 #include "sequences/pipeline/extended_composite.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_beside.h"
 #include "sequences/pipeline/shade_passes.h"
+#include "sequences/pipeline/shadow_map_planning.h"
 #include "sequences/pipeline/stopwatch.h"
 
 namespace talisman::sequences {
@@ -27,15 +29,41 @@ using layers::SpritePlacement;
 using regulator::Action;
 using regulator::LayerAssessment;
 
-/// What the policy `reference` would render for this frame: every layer in view, without growth.
-std::int64_t reference_pixels(const Pipeline& pipeline, const FrameReport& report,
-                              const std::vector<LayerState>& states) {
-  std::int64_t pixels = 0;
-  for (const int layer : report.order.back_to_front)
-    pixels += cost_of(report.layers[layer],
-                      placement_without_growth(pipeline, report.layers, states[layer]).size_px)
-                  .pixels;
-  return pixels;
+/// What the policy `reference` would render for this frame: every layer in view, without growth, and the shadow
+/// maps that changed since the last frame, whatever this run does. Between two beats, cycles are merged as on the
+/// last one.
+regulator::LayerCost reference_cost(const Pipeline& pipeline, PipelineState& state, const FrameReport& report,
+                                    const std::vector<ShadowMapCost>& costs) {
+  const std::vector<LayerState>& states = captured_states(pipeline, state, report.frame);
+  const std::vector<ShadowMapKey>& keys = state.captured.at(report.frame).shadow_maps;
+  regulator::LayerCost sum;
+  ShadeCounters passes;
+  for (const Layer& layer : report.layers) {
+    if (!report.order.has_own_sprite(layer.id, layer.is_aggregate()) || !states[layer.id].touches_display)
+      continue;
+    const regulator::LayerCost cost =
+        cost_of(pipeline, report.layers, layer.id,
+                placement_without_growth(pipeline, report.layers, states[layer.id]));
+    sum.polygons += cost.polygons;
+    sum.pixels += cost.pixels;
+    state.reference_shades.add_render(pipeline.scene, report.layers.set(), layer, keys, costs, passes);
+  }
+  sum.polygons += passes.shadow_polygons;
+  sum.pixels += passes.shadow_pixels;
+  return sum;
+}
+
+/// The order in which sprites are composited; may merge layers into aggregates.
+FrameOrder order_of(const Pipeline& pipeline, PipelineState& state, int frame) {
+  if (state.beat) return standing_order(state.beat->order);
+  FrameOrder order = order_layers(pipeline, state, frame);
+  if (regulator::keeps_beat(pipeline.settings.regulator.policy)) state.beat = BeatMemory{frame, order};
+  return order;
+}
+
+/// The time whose fades are shown.
+double time_of_fades(const Pipeline& pipeline, const PipelineState& state, int frame) {
+  return time_of(pipeline, state.beat ? state.beat->frame : frame);
 }
 
 /// A layer that another one draws in this frame, or an aggregate that does not exist in it, is out of view.
@@ -50,14 +78,12 @@ LayerAssessment assess(const Pipeline& pipeline, PipelineState& state, const Lay
   return not_shown;
 }
 
-/// How far the greedy choice of this frame was from the best one, if the policy makes one.
-std::optional<regulator::BudgetGap> gap_of(const Pipeline& pipeline, const FrameReport& report) {
-  const regulator::RegulatorOptions& options = pipeline.settings.regulator;
+/// How far the choice of this frame was from the best one, if the policy makes one.
+std::optional<regulator::BudgetGap> gap_of(const FrameReport& report, const ShadowMapsNow& maps,
+                                           const regulator::RegulatorOptions& options) {
   if (options.policy != regulator::Policy::Budget) return std::nullopt;
   constexpr std::size_t kMostStates = 20'000;  // some 20 ms, then the frame counts as not proved
-  return regulator::budget_gap(regulator::candidates_of(report.assessments, options),
-                               regulator::left_after_first_appearances(report.assessments, options),
-                               kMostStates);
+  return regulator::budget_gap_of_frame(report.assessments, options, maps.maps, kMostStates);
 }
 
 /// Chooses the instant as of which the layer is drawn, and completes the decision by how that sprite is shown
@@ -80,7 +106,8 @@ int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
 }
 
 /// Notes every layer that is to be rendered: its state and its placement, drawn or not.
-void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameReport& report) {
+void remember_renders(const Pipeline& pipeline, PipelineState& state, const ShadowMapsNow& maps,
+                      FrameReport& report) {
   for (regulator::LayerDecision& decision : report.plan.decisions) {
     if (decision.action == Action::Drop) continue;
     LayerMemory& memory = state.memory[decision.layer];
@@ -96,26 +123,33 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, FrameRepor
       memory.resolution = decision.resolution;
       memory.predicted = predicts(pipeline);
       memory.frames_short_of_area = 0;
-      const Layer& layer = state.layers[decision.layer];
-      decision.cost = cost_of(layer, memory.placement.size_px);
-      state.shade_plan.add_render(pipeline.scene, state.layers.set(), layer,
-                                  state.captured.at(instant).shadow_maps, report.shade);
+      decision.cost = cost_of(pipeline, state.layers, decision.layer, memory.placement);
+      look_up_shadow_maps(pipeline, state, maps, decision.layer, instant, report);
     }
     memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
     decision.depicts_frame = memory.depicts_frame;
   }
+  finish_shadow_maps(state, report);
+}
+
+/// The options of the regulator for this frame: what is measured is filled in.
+regulator::RegulatorOptions options_now(const Pipeline& pipeline, const PipelineState& state) {
+  regulator::RegulatorOptions options = pipeline.settings.regulator;
+  if (options.budget.depth_complexity == 0) options.budget.depth_complexity = state.depth.complexity();
+  return options;
 }
 
 /// The sprites of this frame, back to front, each with the map that puts it in its place.
 std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineState& state,
                                        const FrameReport& report) {
+  const double fades_s = time_of_fades(pipeline, state, report.frame);
   std::vector<ShownSprite> shown;
   shown.reserve(report.order.back_to_front.size());
   for (const int layer : report.order.back_to_front) {
     const regulator::LayerDecision& decision = report.plan.decisions[layer];
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
-    SpriteMultipliers multipliers = multipliers_at(report.layers[layer], time_of(pipeline, report.frame));
+    SpriteMultipliers multipliers = multipliers_at(report.layers[layer], fades_s);
     if constexpr (layers::is_built(layers::Effect::ColorWarp))
       multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
@@ -134,20 +168,40 @@ const chunker::CompressionOptions* compression_of(const Pipeline& pipeline) {
   return called ? &*pipeline.settings.compression : nullptr;
 }
 
+/// The scene at the instants of the sprites and the shadow maps that a frame draws.
+class Instants {
+ public:
+  Instants(const Pipeline& pipeline, int frame, const SceneFrame& now)
+      : pipeline_(pipeline), frame_(frame), now_(now) {}
+  /// As it was expected in frame `known`.
+  const SceneFrame& at(int known, int instant) {
+    if (known == frame_ && instant == frame_) return now_;
+    const auto [it, is_new] = others_.try_emplace({known, instant});
+    if (is_new) it->second = scene_expected(pipeline_, known, instant);
+    return it->second;
+  }
+
+ private:
+  const Pipeline& pipeline_;
+  int frame_;
+  const SceneFrame& now_;
+  std::map<std::pair<int, int>, SceneFrame> others_;
+};
+
 /// Draws the sprites that this frame shows and the store does not hold yet.
 void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
                           const chunker::PreparedScene& prepared, FrameReport& report) {
-  std::map<std::pair<int, int>, SceneFrame> others;  // instants other than now; by when they were expected
+  Instants instants(pipeline, report.frame, now);
   for (const ShownSprite& sprite : report.shown) {
     LayerMemory& memory = state.memory[sprite.layer];
     if (memory.drawn) continue;
     const int instant = memory.depicts_frame;
-    const std::pair key{memory.predicted ? memory.frame_rendered : instant, instant};
-    const bool as_of_now = key == std::pair{report.frame, report.frame};
-    if (!as_of_now && others.count(key) == 0)
-      others.emplace(key, scene_expected(pipeline, key.first, instant));
+    const SceneFrame& frame = instants.at(memory.predicted ? memory.frame_rendered : instant, instant);
+    std::vector<HeldMap> held;
+    for (const ShadowMapInstant& map : memory.maps)
+      held.push_back({map.light, &instants.at(map.known, map.depicts_frame), map.resolution});
     chunker::RenderResult result =
-        draw_layer({pipeline, state.layers, state.shadow_maps, prepared, as_of_now ? now : others.at(key)},
+        draw_layer({pipeline, state.layers, state.shadow_maps, prepared, frame, held},
                    state.layers[sprite.layer], memory.placement);
     const bool is_late = memory.frame_rendered != report.frame;
     if (const chunker::CompressionOptions* compression = compression_of(pipeline))
@@ -243,7 +297,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   // Decide: no pixel is touched up to and including the plan.
   const Stopwatch plan_watch;
   begin_frame(pipeline, state, frame);
-  report.order = order_layers(pipeline, state, frame);  // may merge layers into aggregates
+  report.order = order_of(pipeline, state, frame);
   report.layers = state.layers;
   report.render_by_layer.resize(report.layers.size());
   report.assessments.reserve(report.layers.size());
@@ -251,14 +305,20 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
     report.assessments.push_back(assess(pipeline, state, layer, report));
     report.layers_assessed += report.assessments.back().in_view && report.assessments.back().has_sprite;
   }
-  if (pipeline.settings.regulator.policy == regulator::Policy::Budget)
-    fit_resolutions(pipeline, state, frame, report.assessments);
-  report.plan = regulator::regulate(frame, report.assessments, pipeline.settings.regulator);
+  const regulator::RegulatorOptions options = options_now(pipeline, state);
+  ShadowMapsNow maps = assess_shadow_maps(pipeline, state, report);
+  if (options.policy == regulator::Policy::Budget)
+    fit_resolutions(pipeline, state, frame, options, report.assessments, maps.maps);
+  report.plan = regulator::regulate({frame, state.beat ? state.beat->frame : frame}, report.assessments,
+                                    options, maps.maps);
+  report.shadow_maps = shadow_map_rows(pipeline, maps, report.plan.maps);
+  report.depth_complexity = options.budget.depth_complexity;
   double bookkeeping_ms = plan_watch.ms();
-  report.pixels_reference = reference_pixels(pipeline, report, captured_states(pipeline, state, frame));
-  if (pipeline.settings.budget_gap) report.budget_gap = gap_of(pipeline, report);
+  report.reference = reference_cost(pipeline, state, report, maps.costs);
+  if (pipeline.settings.budget_gap) report.budget_gap = gap_of(report, maps, options);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
-  remember_renders(pipeline, state, report);
+  if (measures_depth(pipeline)) measure_depth(pipeline, state, report);
+  remember_renders(pipeline, state, maps, report);
   explain_order(report);
   report.shown = sprites_shown(pipeline, state, report);
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan

@@ -73,8 +73,7 @@ DecisionColumns::~DecisionColumns() = default;
 
 void DecisionColumns::add(const PipelineState& state, const FrameReport& report) {
   const auto& table = decision_table();
-  for (const int layer : layers_with_lines(state, report)) {
-    const DecisionRow row{report, report.plan.decisions[layer]};
+  for (const DecisionRow& row : decision_rows(state, report)) {
     std::vector<bool> has_group;
     for (const auto& group : table.groups) has_group.push_back(group.has(row));
     for (std::size_t k = 0; k < table.columns.size(); ++k) {

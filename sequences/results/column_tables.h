@@ -17,10 +17,25 @@
 
 namespace talisman::sequences {
 
+/// A layer, or a shadow map, at one frame. Keeps references.
 struct DecisionRow {
-  const FrameReport& report;
+  DecisionRow(const FrameReport& report, const regulator::LayerDecision& of_layer)
+      : frame(report.frame),
+        name(report.layers[of_layer.layer].name),
+        assessment(report.assessments[of_layer.layer]),
+        decision(of_layer) {}
+  DecisionRow(const FrameReport& report, const ShadowMapRow& map)
+      : frame(report.frame), name(map.name), assessment(map.assessment), decision(map.decision) {}
+
+  int frame;
+  const std::string& name;
+  const regulator::LayerAssessment& assessment;
   const regulator::LayerDecision& decision;
 };
+
+/// All rows of a frame, in the order of decisions.jsonl: the author's layers, the aggregates that exist, the
+/// shadow maps.
+std::vector<DecisionRow> decision_rows(const PipelineState& state, const FrameReport& report);
 
 struct LayerRow {
   const LayerSummary& layer;

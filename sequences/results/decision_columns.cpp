@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "sequences/pipeline/aggregates.h"
 #include "sequences/results/column_tables.h"
 
 namespace talisman::sequences {
@@ -8,9 +9,7 @@ namespace {
 using Row = DecisionRow;
 using DecisionColumns = std::vector<Column<Row>>;
 
-const regulator::LayerAssessment& assessment(const Row& row) {
-  return row.report.assessments[row.decision.layer];
-}
+const regulator::LayerAssessment& assessment(const Row& row) { return row.assessment; }
 const fiducials::Report& fiducials_of(const Row& row) { return assessment(row).fiducials; }
 
 /// `value` of the photometric fiducial where it was computed; else there is only the reason.
@@ -56,9 +55,10 @@ Value if_computed(const Part& part, T value) {
 
 DecisionColumns what_was_done() {
   return {computed<Row>("frame", "frame", "", "number of the frame, from 0",
-                        [](const Row& r) { return r.report.frame; }),
-          computed<Row>("layer", "layer", "", "name of the layer, or of the aggregate that draws several",
-                        [](const Row& r) { return r.report.layers[r.decision.layer].name; }),
+                        [](const Row& r) { return r.frame; }),
+          computed<Row>("layer", "layer", "",
+                        "name of the layer, of the aggregate that draws several, or of the shadow map",
+                        [](const Row& r) { return std::string_view(r.name); }),
           computed<Row>("decision", "decision", "",
                         "reuse (warp the old sprite), rerender, or drop (out of view)",
                         [](const Row& r) { return regulator::name(r.decision.action); }),
@@ -86,10 +86,12 @@ DecisionColumns warp_columns() {
 
 DecisionColumns what_is_shown() {
   return {
-      computed<Row>("geometric_px", "geometric_px", "px",
-                    "error of what is displayed: largest distance of a characteristic point from where it "
-                    "belongs; 0 for a fresh sprite",
-                    [](const Row& r) { return r.decision.shown_geometric_px; }),
+      computed<Row>(
+          "geometric_px", "geometric_px", "px",
+          "error of what is displayed: largest distance of a characteristic point from where it "
+          "belongs; 0 for a fresh sprite, unless its shadow map is old: then how far its shadow is off; "
+          "of a shadow map: how far its shadows have run since it was drawn, where that is judged",
+          [](const Row& r) { return r.decision.shown_geometric_px; }),
       computed<Row>("color_r", "color/0", "",
                     "multiplier of the sprite's colour, 0 to 1; 1 for a fresh sprite",
                     [](const Row& r) { return r.decision.shown_color.x; }),
@@ -206,9 +208,11 @@ DecisionColumns cost_columns() {
   return {
       computed<Row>("cost_polygons", "cost/polygons", "triangles", "sent to the renderer; 0 unless rendered",
                     [](const Row& r) { return r.decision.cost.polygons; }),
-      computed<Row>("cost_pixels", "cost/pixels", "texels", "of the sprite's rectangle, likewise",
+      computed<Row>("cost_pixels", "cost/pixels", "texels",
+                    "of the sprite's rectangle, of mirrored pictures, of the map; likewise",
                     [](const Row& r) { return r.decision.cost.pixels; }),
-      computed<Row>("cost_chunks", "cost/chunks", "32×32 chunks", "of the sprite's rectangle, likewise",
+      computed<Row>("cost_chunks", "cost/chunks", "32×32 chunks",
+                    "of the sprite's rectangle, of mirrored pictures, of the map; likewise",
                     [](const Row& r) { return r.decision.cost.chunks; }),
       computed<Row>("cost_bytes", "cost/bytes", "bytes",
                     "of the sprite, uncompressed, clear chunks included, likewise",
@@ -216,6 +220,14 @@ DecisionColumns cost_columns() {
 }
 
 }  // namespace
+
+std::vector<DecisionRow> decision_rows(const PipelineState& state, const FrameReport& report) {
+  std::vector<DecisionRow> rows;
+  for (const int layer : layers_with_lines(state, report))
+    rows.emplace_back(report, report.plan.decisions[layer]);
+  for (const ShadowMapRow& map : report.shadow_maps) rows.emplace_back(report, map);
+  return rows;
+}
 
 const ColumnTable<DecisionRow>& decision_table() {
   static const ColumnTable<DecisionRow> table = [] {

@@ -59,41 +59,50 @@ FrameColumns frame_work() {
               "polygons_rendered", "triangles", "of the layers rendered, and of casters in shadow maps",
               [](auto& l) -> auto& { return l.polygons.rendered; }),
           counted(
-              "polygons_reference", "triangles", "of all layers in view: what `reference` would draw",
+              "polygons_reference", "triangles",
+              "what `reference` would draw: all layers in view, and the shadow maps that changed",
               [](auto& l) -> auto& { return l.polygons.reference; }),
           counted(
-              "pixels_rendered", "texels", "of the rectangles of the sprites rendered",
+              "pixels_rendered", "texels",
+              "of the rectangles of the sprites rendered, of mirrored pictures and of shadow maps",
               [](auto& l) -> auto& { return l.pixels.rendered; }),
           counted(
-              "pixels_reference", "texels", "the same for all layers in view",
+              "pixels_reference", "texels", "what `reference` would draw",
               [](auto& l) -> auto& { return l.pixels.reference; })};
 }
 
 FrameColumns drawing() {
-  return {measured(
-              "pixels_filled", "texels", "writes by the renderer",
-              [](auto& l) -> auto& { return l.pixels.filled; }),
-          measured(
-              "pixels_composited", "pixels", "reads of sprites by the compositor",
-              [](auto& l) -> auto& { return l.pixels.composited; }),
-          measured(
-              "chunks_rendered", "32×32 chunks", "in which something was drawn",
-              [](auto& l) -> auto& { return l.chunks.rendered; }),
-          measured(
-              "chunks_clear", "32×32 chunks", "of the sprites rendered, in which nothing was",
-              [](auto& l) -> auto& { return l.chunks.clear; }),
-          measured(
-              "fragments", "fragments", "stored for pixels that are covered in part, or translucent",
-              [](auto& l) -> auto& { return l.fragments; }),
-          measured(
-              "texture_samples", "samples", "filtered look-ups, trilinear or bilinear",
-              [](auto& l) -> auto& { return l.texture_samples; }),
-          measured(
-              "sprite_bytes", "bytes", "of the sprites that the frame shows, as they are stored",
-              [](auto& l) -> auto& { return l.sprite_bytes; }),
-          measured(
-              "modelled_ms", "ms", "modelled time of the frame on the profile talisman-1996",
-              [](auto& l) -> auto& { return l.modelled_ms; })};
+  return {
+      measured(
+          "pixels_filled", "texels", "writes by the renderer, and texels of shadow maps",
+          [](auto& l) -> auto& { return l.pixels.filled; }),
+      measured(
+          "pixels_composited", "pixels", "reads of sprites by the compositor",
+          [](auto& l) -> auto& { return l.pixels.composited; }),
+      measured(
+          "pixels_in_registers", "pixels", "written by the operators of compositing expressions",
+          [](auto& l) -> auto& { return l.pixels.registers; }),
+      measured(
+          "chunks_rendered", "32×32 chunks", "in which something was drawn",
+          [](auto& l) -> auto& { return l.chunks.rendered; }),
+      measured(
+          "chunks_clear", "32×32 chunks", "of the sprites rendered, in which nothing was",
+          [](auto& l) -> auto& { return l.chunks.clear; }),
+      measured(
+          "fragments", "fragments", "stored for pixels that are covered in part, or translucent",
+          [](auto& l) -> auto& { return l.fragments; }),
+      measured(
+          "texture_samples", "samples", "filtered look-ups, trilinear or bilinear",
+          [](auto& l) -> auto& { return l.texture_samples; }),
+      measured(
+          "sprite_bytes", "bytes", "of the sprites that the frame shows, as they are stored",
+          [](auto& l) -> auto& { return l.sprite_bytes; }),
+      measured(
+          "modelled_ms", "ms", "modelled time of the frame on the profile talisman-1996",
+          [](auto& l) -> auto& { return l.modelled_ms; }),
+      counted(
+          "depth_complexity", "", "how often a texel is filled, as measured for a budget of ms; at least 1",
+          [](auto& l) -> auto& { return l.depth_complexity; })};
 }
 
 template <typename Member>
@@ -129,8 +138,12 @@ FrameColumns frame_visibility() {
               [](auto& l) -> auto& { return l.visibility->counters.merged_components; }),
           sorting(
               "merged_layers", "layers", "in these",
-              [](auto& l) -> auto& { return l.visibility->counters.merged_layers; }),
-          sorting(
+              [](auto& l) -> auto& { return l.visibility->counters.merged_layers; })};
+}
+
+/// Compositing expressions, and the sprites that are merged all the same.
+FrameColumns frame_expressions() {
+  return {sorting(
               "resolved_components", "components", "cycles that an expression of the compositor shows",
               [](auto& l) -> auto& { return l.visibility->resolved.components; }),
           sorting(
@@ -139,6 +152,9 @@ FrameColumns frame_visibility() {
           sorting(
               "expression_registers", "registers", "images that one expression keeps at once, at most",
               [](auto& l) -> auto& { return l.visibility->resolved.registers; }),
+          sorting(
+              "expression_operators", "operators", "evaluated by the expressions, each over an image",
+              [](auto& l) -> auto& { return l.visibility->resolved.operators; }),
           sorting(
               "expression_reads", "reads", "of sprites by the expressions",
               [](auto& l) -> auto& { return l.visibility->resolved.reads; }),
@@ -223,7 +239,7 @@ const ColumnTable<FrameLine>& frame_table() {
     for (const FrameColumns& part :
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
-          light_layers(), frame_budget_gap(),
+          light_layers(), frame_expressions(), frame_budget_gap(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

@@ -15,7 +15,9 @@ namespace {
 /// What is known of a frame that was drawn.
 void add_drawing(FrameLine& line, const FrameReport& report) {
   line.frame_hash = hash_of(report.picture);
-  line.pixels.filled = report.render.pixels_filled;
+  line.pixels.filled = report.render.pixels_filled + report.shade.shadow_pixels;
+  line.pixels.registers =
+      report.order.resolved_counters().operators * static_cast<std::int64_t>(report.picture.pixels.size());
   line.pixels.composited = report.composite.pixels_composited;
   line.chunks = {report.render.chunks_rendered, report.render.chunks_clear};
   line.fragments = report.render.fragments;
@@ -25,9 +27,10 @@ void add_drawing(FrameLine& line, const FrameReport& report) {
   if (line.compression) line.times.compress_ms = line.compression->compress_ms;
   line.times.render_ms = report.times.render_ms;
   line.times.composite_ms = report.times.composite_ms;
-  line.modelled_ms = regulator::modelled_time(regulator::talisman_1996(), line.polygons.rendered,
-                                              line.pixels.filled, line.pixels.composited)
-                         .frame_ms;
+  line.modelled_ms =
+      regulator::modelled_time(regulator::talisman_1996(), line.polygons.rendered, line.pixels.filled,
+                               line.pixels.composited + line.pixels.registers)
+          .frame_ms;
 }
 
 const RowJson<FrameLine>& frame_json() {
@@ -59,15 +62,15 @@ FrameLine line_of(const FrameReport& report) {
     line.reuses += d.action == regulator::Action::Reuse;
     line.polygons.rendered += d.cost.polygons;
     line.pixels.rendered += d.cost.pixels;
-    if (d.action == regulator::Action::Drop) continue;
-    ++line.layers_in_view;
-    line.polygons.reference += report.layers[d.layer].polygons;
+    line.layers_in_view += d.action != regulator::Action::Drop;
   }
   line.passes = {report.shade.shadow_maps_drawn, report.shade.shadow_maps_reused,
                  report.shade.reflections_drawn};
   line.polygons.rendered += report.shade.shadow_polygons;
-  line.polygons.reference += report.shade.shadow_polygons;  // drawn for the layers of this frame
-  line.pixels.reference = report.pixels_reference;
+  line.pixels.rendered += report.shade.shadow_pixels;
+  line.depth_complexity = report.depth_complexity;
+  line.polygons.reference = report.reference.polygons;
+  line.pixels.reference = report.reference.pixels;
   line.times.plan_ms = report.times.plan_ms;
   if (report.order.sorted) {
     line.visibility = {report.order.counters, report.order.merged_parts, report.order.resolved_counters()};
@@ -93,9 +96,13 @@ std::optional<FrameLine> frame_line_from_json(const std::string& text) try {
   return std::nullopt;
 }
 
-std::string json_of(const FrameReport& report, const regulator::LayerDecision& decision) {
+std::string json_of(const DecisionRow& row) {
   static const RowJson<DecisionRow> json(decision_table());
-  return json.write({report, decision}).dump();
+  return json.write(row).dump();
+}
+
+std::string json_of(const FrameReport& report, const regulator::LayerDecision& of_layer) {
+  return json_of(DecisionRow(report, of_layer));
 }
 
 }  // namespace talisman::sequences

@@ -43,14 +43,15 @@ struct PassCounts {
 
 struct PolygonCounts {
   std::int64_t rendered = 0;   ///< triangles of the layers rendered, and of casters in shadow maps
-  std::int64_t reference = 0;  ///< triangles of all layers in view
+  std::int64_t reference = 0;  ///< what `reference` would render: all layers in view, maps that changed
 };
 
 struct PixelCounts {
-  std::int64_t rendered = 0;   ///< texels of the rectangles of the sprites rendered
-  std::int64_t reference = 0;  ///< the same for all layers in view
-  std::int64_t filled = 0;     ///< writes by the renderer
+  std::int64_t rendered = 0;   ///< texels of the rectangles of sprites, of mirrored pictures, of shadow maps
+  std::int64_t reference = 0;  ///< what `reference` would render
+  std::int64_t filled = 0;     ///< writes by the renderer, and texels of shadow maps
   std::int64_t composited = 0;
+  std::int64_t registers = 0;  ///< that operators of compositing expressions write, each a pixel of an image
 };
 
 struct ChunkCounts {
@@ -77,6 +78,7 @@ struct FrameLine {
   std::int64_t sprite_bytes = 0;          ///< of the sprites that the frame shows
   double modelled_ms = 0;                 ///< by the profile talisman-1996
   std::optional<double> light_beside_px;  ///< the largest of all Light layers; empty: there is none
+  double depth_complexity = 1;            ///< by which a budget of ms was divided
   std::optional<CompressionReport> compression;
   std::optional<VisibilityLine> visibility;  ///< empty: the groups alone gave the order
   std::optional<FrameQuality> quality;
@@ -91,8 +93,11 @@ std::string json_of(const FrameLine& line);
 /// Empty if the text is not a whole line of frames.jsonl. Times are zero.
 std::optional<FrameLine> frame_line_from_json(const std::string& text);
 
+struct DecisionRow;  // results/column_tables.h
+
 /// A line of decisions.jsonl.
-std::string json_of(const FrameReport& report, const regulator::LayerDecision& decision);
+std::string json_of(const DecisionRow& row);
+std::string json_of(const FrameReport& report, const regulator::LayerDecision& of_layer);
 
 std::string hash_of(const chunker::Frame& picture);
 

@@ -17,6 +17,7 @@
 #include "sequences/pipeline/step.h"
 #include "sequences/pipeline/stopwatch.h"
 #include "sequences/results/audit.h"
+#include "sequences/results/column_tables.h"
 #include "sequences/results/run_folder.h"
 #include "sequences/results/run_identity.h"
 #include "sequences/results/separate_pictures.h"
@@ -91,8 +92,7 @@ class Runner {
     FrameReport report = step(pipeline_, state_, frame, draw ? prepared_.get() : nullptr);
     if (!in_range) return;
     add_decisions(summary_, report, state_);
-    for (const int layer : layers_with_lines(state_, report))
-      decisions_->write(json_of(report, report.plan.decisions[layer]));
+    for (const DecisionRow& row : decision_rows(state_, report)) decisions_->write(json_of(row));
     if (kept != kept_.end())
       writer_.submit([this, line = kept->second] { add_line(line); });
     else

@@ -95,17 +95,19 @@ RunColumns run_work() {
              [](const RunRow& r) { return r.summary.cost_weighted_update_rate(); }),
       of_run("polygons_rendered", "triangles", "of the layers rendered, and of casters in shadow maps",
              [](const RunRow& r) { return r.summary.polygons_rendered(); }),
-      of_run("polygons_reference", "triangles", "of all layers in view: what `reference` would draw",
+      of_run("polygons_reference", "triangles",
+             "what `reference` would draw: all layers in view, and the shadow maps that changed",
              [](const RunRow& r) {
                return total_of(r, [](const FrameLine& l) { return l.polygons.reference; });
              }),
-      of_run("pixels_rendered", "texels", "of the rectangles of the sprites rendered",
+      of_run("pixels_rendered", "texels",
+             "of the rectangles of the sprites rendered, of mirrored pictures and of shadow maps",
              [](const RunRow& r) { return r.summary.pixels_rendered(); }),
       of_run(
-          "pixels_reference", "texels", "the same for all layers in view",
+          "pixels_reference", "texels", "what `reference` would draw",
           [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.pixels.reference; }); }),
       measured(
-          "pixels_filled", "texels", "writes by the renderer",
+          "pixels_filled", "texels", "writes by the renderer, and texels of shadow maps",
           [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.pixels.filled; }); }),
       measured("pixels_composited", "pixels", "reads of sprites by the compositor",
                [](const RunRow& r) {
@@ -117,6 +119,15 @@ RunColumns run_work() {
       measured(
           "chunks_clear", "32×32 chunks", "of the sprites rendered, in which nothing was",
           [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.chunks.clear; }); }),
+      measured("depth_complexity", "",
+               "pixels_filled over pixels_rendered: below 1 where rectangles are clear",
+               [](const RunRow& r) {
+                 const double texels = static_cast<double>(r.summary.pixels_rendered());
+                 const auto filled = total_of(r, [](const FrameLine& l) { return l.pixels.filled; });
+                 return texels > 0 ? static_cast<double>(filled) / texels : 0;
+               }),
+      of_run("frames_deferred", "frames", "in which something was put off for want of budget",
+             [](const RunRow& r) { return r.summary.frames_deferred; }),
       place("effects")};
 }
 
@@ -148,6 +159,8 @@ RunColumns run_visibility() {
           sorting("resolved_layers", "layers", "in these", [](const RunRow& r) { return r.resolved.layers; }),
           sorting("expression_registers", "registers", "images that one expression keeps at once, at most",
                   [](const RunRow& r) { return r.resolved.registers; }),
+          sorting("expression_operators", "operators", "evaluated by the expressions, each over an image",
+                  [](const RunRow& r) { return r.resolved.operators; }),
           sorting("expression_reads", "reads", "of sprites by the expressions",
                   [](const RunRow& r) { return r.resolved.reads; })};
 }
@@ -171,7 +184,7 @@ RunColumns compression() {
 
 RunColumns run_budget_gap() {
   return {computed<RunRow>("budget_gap_mean", "budget_gap/mean", "",
-                           "share of the best choice's benefit that greedy missed, mean over exact_frames",
+                           "share of the best choice's benefit that was missed, mean over exact_frames",
                            [](const RunRow& r) { return r.gap.mean; }),
           computed<RunRow>("budget_gap_max", "budget_gap/max", "", "the largest of them",
                            [](const RunRow& r) { return r.gap.max; }),

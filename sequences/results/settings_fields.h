@@ -16,7 +16,8 @@ namespace settings_fields {
 
 template <typename Thresholds, typename Visit>
 void thresholds(Thresholds& t, const Visit& visit) {
-  auto& [geometric, magnification, minification, anisotropy, uncovered, turned, photometric, light_angle] = t;
+  auto& [geometric, magnification, minification, anisotropy, uncovered, turned, photometric, shadow_map,
+         light_angle] = t;
   visit("geometric_px", geometric);
   visit("magnification", magnification);
   visit("minification", minification);
@@ -24,18 +25,21 @@ void thresholds(Thresholds& t, const Visit& visit) {
   visit("uncovered_px", uncovered);
   visit("turned_px", turned);
   visit("photometric", photometric);
+  visit("shadow_map_px", shadow_map);
   visit("light_angle_rad", light_angle);
 }
 
 template <typename Budget, typename Visit>
 void budget(Budget& b, const Visit& visit) {
-  auto& [polygons, pixels, chunks, ms, min_resolution, cutoff] = b;
+  auto& [polygons, pixels, chunks, ms, min_resolution, cutoff, choice, depth_complexity] = b;
   visit("budget_polygons", polygons);
   visit("budget_pixels", pixels);
   visit("budget_chunks", chunks);
   visit("budget_ms", ms);
   visit("min_resolution", min_resolution);
   visit("cutoff_px", cutoff);
+  visit("choice", choice);
+  visit("depth_complexity", depth_complexity);
 }
 
 template <typename Options, typename Visit>

@@ -22,6 +22,7 @@ Json setting_value(const layers::ivec2& v) { return {v.x, v.y}; }
 Json setting_value(const layers::dvec2& v) { return {v.x, v.y}; }
 Json setting_value(regulator::Policy policy) { return regulator::name(policy); }
 Json setting_value(regulator::Prediction prediction) { return regulator::name(prediction); }
+Json setting_value(regulator::ChoiceRule rule) { return regulator::name(rule); }
 Json setting_value(warp::Curve curve) { return warp::name(curve); }
 
 Json setting_value(layers::BoundKind bound) {

@@ -37,8 +37,9 @@ bool is_drawn_with(const layers::EffectCall& effect, const layers::Layer& layer)
 Json layers_json(const Summary& s) {
   static const RowJson<LayerRow> writer(layer_table());
   Json json = Json::array();
-  for (const LayerSummary& layer : s.layers)
-    json.push_back(writer.write({layer, static_cast<int>(s.frames.size())}));
+  for (const auto* rows : {&s.layers, &s.shadow_maps})
+    for (const LayerSummary& layer : *rows)
+      json.push_back(writer.write({layer, static_cast<int>(s.frames.size())}));
   return json;
 }
 
@@ -55,6 +56,37 @@ Json audit_json(const Summary& s) {
   Json json = Json::array();
   for (const LayerAudit& layer : s.audit) json.push_back(writer.write(layer));
   return json;
+}
+
+/// What a frame in which it is shown adds to its row, but for the renders.
+void add_decision(const regulator::LayerDecision& d, layers::ivec2 size_px, LayerSummary& row) {
+  ++row.frames_shown;
+  row.sum_resolution += d.resolution;
+  row.sum_geometric_px += d.shown_geometric_px;
+  row.max_geometric_px = std::max(row.max_geometric_px, d.shown_geometric_px);
+  row.frames_deferred += d.deferred;
+  row.frames_over_budget += d.over_budget;
+  const bool is_larger =
+      std::int64_t{size_px.x} * size_px.y > std::int64_t{row.sprite_px.x} * row.sprite_px.y;
+  if (d.action == regulator::Action::Rerender && is_larger) row.sprite_px = size_px;
+}
+
+/// Was one of them put off?
+bool add_shadow_maps(Summary& summary, const FrameReport& report) {
+  bool any_deferred = false;
+  for (const ShadowMapRow& map : report.shadow_maps) {
+    auto row = std::find_if(summary.shadow_maps.begin(), summary.shadow_maps.end(),
+                            [&](const LayerSummary& r) { return r.name == map.name; });
+    if (row == summary.shadow_maps.end()) {
+      const int polygons = static_cast<int>(map.assessment.cost.polygons);
+      row = summary.shadow_maps.insert(row, row_of(map.name, map.parts, polygons, false));
+      row->is_shadow_map = true;
+    }
+    row->renders += map.pictures;
+    if (map.decision.action != regulator::Action::Drop) add_decision(map.decision, map.size_px, *row);
+    any_deferred = any_deferred || map.decision.deferred;
+  }
+  return any_deferred;
 }
 
 }  // namespace
@@ -87,23 +119,20 @@ void add_decisions(Summary& summary, const FrameReport& report, const PipelineSt
       summary.effect_passes[e] += report.order.sorted;
     else if (summary.effects[e].effect == layers::Effect::ShadowMap)
       summary.effect_passes[e] += report.shade.shadow_maps_drawn;
+  bool any_deferred = add_shadow_maps(summary, report);
   for (const regulator::LayerDecision& d : report.plan.decisions) {
     if (d.action == regulator::Action::Drop) continue;
     LayerSummary& layer = summary.layers[row_in_run(state, d.layer)];
-    ++layer.frames_shown;
-    layer.sum_resolution += d.resolution;
-    layer.sum_geometric_px += d.shown_geometric_px;
-    layer.max_geometric_px = std::max(layer.max_geometric_px, d.shown_geometric_px);
+    add_decision(d, state.memory[d.layer].placement.size_px, layer);
+    any_deferred = any_deferred || d.deferred;
     if (d.action != regulator::Action::Rerender) continue;
     ++layer.renders;
-    const layers::ivec2 size = state.memory[d.layer].placement.size_px;
-    if (std::int64_t{size.x} * size.y > std::int64_t{layer.sprite_px.x} * layer.sprite_px.y)
-      layer.sprite_px = size;
     const layers::Layer& drawn = report.layers[d.layer];
     for (const int member : drawn.members) ++summary.layers[member].merged_renders;
     for (std::size_t e = 0; e < summary.effects.size(); ++e)
       summary.effect_passes[e] += is_drawn_with(summary.effects[e], drawn);
   }
+  summary.frames_deferred += any_deferred;
 }
 
 double Summary::mean_update_rate() const {
@@ -166,6 +195,7 @@ ResolvedCounters Summary::resolved() const {
     sum.components += r.components;
     sum.layers += r.layers;
     sum.reads += r.reads;
+    sum.operators += r.operators;
     sum.registers = std::max(sum.registers, r.registers);
   }
   return sum;

@@ -27,6 +27,9 @@ struct LayerSummary {
   double sum_resolution = 0;      ///< over the frames in which it was shown
   int merged_renders = 0;         ///< renders of aggregates in which it took part; not among `renders`
   bool is_aggregate = false;      ///< counted with its members where rates are averaged
+  bool is_shadow_map = false;     ///< not counted where rates are averaged
+  int frames_deferred = 0;        ///< worth drawing, but the budget did not suffice
+  int frames_over_budget = 0;     ///< of these: dearer than the whole budget
   double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
   /// The share of frames in which it was drawn anew, alone or in an aggregate.
   double drawn_rate(int frames) const {
@@ -51,6 +54,8 @@ struct Summary {
   std::optional<int> compression_quality;
   bool planned_only = false;
   std::vector<LayerSummary> layers;
+  std::vector<LayerSummary> shadow_maps;  ///< behind the layers in the tables
+  int frames_deferred = 0;                ///< in which something was put off for want of budget
   std::vector<layers::EffectCall> effects;
   /// One per entry of `effects`: renders of layers that use it; for shadow maps the maps drawn.
   std::vector<int> effect_passes;

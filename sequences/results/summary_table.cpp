@@ -22,7 +22,9 @@ std::string layer_rows(const Summary& s) {
   const int frames = static_cast<int>(s.frames.size());
   std::string text = formatted("  %-24s %9s %8s %8s %9s %9s %11s\n", "layer", "polygons", "renders", "rate",
                                "mean px", "max px", "sprite px");
-  for (const LayerSummary& layer : s.layers) {
+  std::vector<LayerSummary> rows = s.layers;
+  rows.insert(rows.end(), s.shadow_maps.begin(), s.shadow_maps.end());
+  for (const LayerSummary& layer : rows) {
     const std::string name = layer.name.size() <= 24 ? layer.name : layer.name.substr(0, 21) + "...";
     const std::string sprite = formatted("%dx%d", layer.sprite_px.x, layer.sprite_px.y);
     text += formatted("  %-24s %9d %8d %7.1f%% %9.3f %9.3f %11s\n", name.c_str(), layer.polygons,
@@ -54,8 +56,8 @@ std::string work_rows(const Summary& s) {
   std::string text = formatted("  update rate       %.1f %% mean over layers, %.1f %% weighted by polygons\n",
                                100 * s.mean_update_rate(), 100 * s.cost_weighted_update_rate());
   text += share_row("polygons", s.polygons_rendered(),
-                    s.total([](const FrameLine& line) { return line.polygons.reference; }), " in view");
-  text += share_row("sprite pixels", s.pixels_rendered(),
+                    s.total([](const FrameLine& line) { return line.polygons.reference; }), "");
+  text += share_row("pixels", s.pixels_rendered(),
                     s.total([](const FrameLine& line) { return line.pixels.reference; }), "");
   if (!s.planned_only)
     text += formatted(
@@ -64,18 +66,33 @@ std::string work_rows(const Summary& s) {
   return text;
 }
 
+/// What the budget put off, and what it could never pay.
+std::string deferred_rows(const Summary& s) {
+  if (s.frames_deferred == 0) return {};
+  std::string text = formatted("  put off           something in %d of %zu frames, for want of budget\n",
+                               s.frames_deferred, s.frames.size());
+  for (const auto* rows : {&s.layers, &s.shadow_maps})
+    for (const LayerSummary& row : *rows)
+      if (row.frames_over_budget > 0)
+        text += "                    " + row.name +
+                formatted(": dearer than the whole budget in %d frames, error up to %.3f px\n",
+                          row.frames_over_budget, row.max_geometric_px);
+  return text;
+}
+
 /// What only some runs have.
 std::string special_rows(const RunRow& run) {
-  std::string text;
+  std::string text = deferred_rows(run.summary);
   if (const GapSummary& gap = run.gap; gap.frames > 0)
     text += formatted(
-        "  greedy choice     misses %.2f %% of the best choice's benefit in the mean, %.1f %% at most\n"
+        "  choice            misses %.2f %% of the best choice's benefit in the mean, %.1f %% at most\n"
         "                    (the best proved in %d of %d frames)\n",
         100 * gap.mean, 100 * gap.max, gap.exact_frames, gap.frames);
   if (const ResolvedCounters& r = run.resolved; r.components > 0)
     text += formatted(
-        "  expressions       %d, for %d sprites that would have been merged; %d reads, %d registers\n",
-        r.components, r.layers, r.reads, r.registers);
+        "  expressions       %d, for %d sprites that would have been merged; %d reads, %d operators, "
+        "%d registers\n",
+        r.components, r.layers, r.reads, r.operators, r.registers);
   return text;
 }
 

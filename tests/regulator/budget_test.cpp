@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <random>
 
@@ -329,6 +330,73 @@ TEST(GreedyGap, NeverNegativeAndNearlyWholeInTheWorstCase) {
   // The textbook trap: a crumb of a slightly better ratio keeps out the layer that fills the budget.
   const std::vector<Candidate> trap = {{0, 1.01, {10}}, {1, 100, {1000}}};
   EXPECT_NEAR(greedy_gap(trap, {1000, kNoLimit}), 0.99, 0.001);
+}
+
+TEST(BestChoice, TakesTheLayerThatACrumbKeepsOut) {
+  const std::vector<Candidate> trap = {{0, 1.01, {10}}, {1, 100, {1000}}};
+  EXPECT_THAT(greedy_choice(trap, {1000, kNoLimit}).layers, ElementsAre(0));
+  EXPECT_THAT(best_choice(trap, {1000, kNoLimit}).layers, ElementsAre(1));
+  EXPECT_THAT(best_choice({}, {1000, kNoLimit}).layers, ElementsAre());
+}
+
+// By its definition: never worse than greedy, within the budget, and at least 1 / (2 k) of the best by brute force
+// with k kinds of budget; one half with one.
+TEST(BestChoice, IsSafeAgainstExhaustiveSearch) {
+  constexpr unsigned kSeed = 2026;
+  std::mt19937 random(kSeed);
+  double worst_of_best = 1, worst_of_greedy = 1;
+  for (int trial = 0; trial < 150; ++trial) {
+    auto candidates = random_candidates(random, trial % 12);
+    if (trial % 3 == 0 && !candidates.empty())
+      candidates[0].benefit_px *= 100;  // one that outweighs the rest
+    for (const auto& [budget, kinds] :
+         {std::pair{Budget{1000, kNoLimit}, 1}, std::pair{Budget{kNoLimit, 50'000}, 1},
+          std::pair{Budget{1000, 50'000}, 2}, std::pair{Budget{1500, 60'000, 30}, 3},
+          std::pair{Budget{0, 0}, 2}, std::pair{Budget{}, 1}}) {
+      const Choice best = best_choice(candidates, budget), greedy = greedy_choice(candidates, budget);
+      const double optimum = best_by_brute_force(candidates, budget);
+      LayerCost spent;
+      for (const int layer : best.layers) {
+        spent.polygons += candidates[layer].cost.polygons;
+        spent.pixels += candidates[layer].cost.pixels;
+        spent.chunks += candidates[layer].cost.chunks;
+      }
+      EXPECT_TRUE(budget.affords(spent)) << "seed " << kSeed << " trial " << trial;
+      EXPECT_GE(best.benefit_px, greedy.benefit_px) << "seed " << kSeed << " trial " << trial;
+      EXPECT_GE(best.benefit_px * 2 * kinds * (1 + 1e-9), optimum) << "seed " << kSeed << " trial " << trial;
+      if (!(optimum > 0)) continue;
+      worst_of_best = std::min(worst_of_best, best.benefit_px / optimum);
+      worst_of_greedy = std::min(worst_of_greedy, greedy.benefit_px / optimum);
+    }
+  }
+  std::printf("least share of the best benefit: best %.3f, paper %.3f\n", worst_of_best, worst_of_greedy);
+}
+
+TEST(PolicyBudget, BestChoiceIsDrawnAndItsReasonsSayWhatIsLacking) {
+  RegulatorOptions options = budget_of(1000);
+  options.budget.choice = ChoiceRule::Best;
+  const auto decisions = decide({layer_of(0, 1.01, 10), layer_of(1, 100, 1000)}, options);
+  EXPECT_THAT(rendered(decisions), ElementsAre(1));
+  EXPECT_THAT(decisions[0].reason, HasSubstr("deferred: budget, polygons 10 > 0 left of 1000"));
+  EXPECT_TRUE(decisions[0].deferred);
+  EXPECT_FALSE(decisions[0].over_budget);
+}
+
+TEST(PolicyBudget, LayerDearerThanTheWholeBudgetIsMarked) {
+  const auto decisions = decide({layer_of(0, 9, 5000)}, budget_of(1000));
+  EXPECT_TRUE(decisions[0].over_budget);
+  EXPECT_THAT(decisions[0].reason, HasSubstr("dearer than the whole budget of 1000 polygons, needs 5000"));
+}
+
+TEST(FrameBudget, DepthComplexityDividesThePixelsOfTheTimeAlone) {
+  RegulatorOptions options;
+  options.budget.ms = 10;
+  options.budget.pixels = 300'000;
+  options.budget.depth_complexity = 1;
+  EXPECT_EQ(frame_budget(options).pixels, 300'000);  // 10 ms are 400,000
+  options.budget.depth_complexity = 2;
+  EXPECT_EQ(frame_budget(options).pixels, 200'000);
+  EXPECT_EQ(frame_budget(options).polygons, 15'000);
 }
 
 TEST(GreedyChoice, IsWhatThePolicyDraws) {

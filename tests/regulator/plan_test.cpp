@@ -48,7 +48,7 @@ RegulatorOptions every(Policy policy, int frames) {
 TEST(Regulate, NoLayersGiveAnEmptyPlan) { EXPECT_TRUE(regulate(3, {}, {}).decisions.empty()); }
 
 TEST(Regulate, LayerOutOfViewIsDroppedByEveryPolicy) {
-  LayerAssessment layer = layer_with_error(100);
+  LayerAssessment layer = layer_with_error(100, 5);
   layer.in_view = false;
   for (const Policy policy : kAllPolicies) {
     const LayerDecision decision = decide(layer, every(policy, 3));
@@ -57,11 +57,12 @@ TEST(Regulate, LayerOutOfViewIsDroppedByEveryPolicy) {
   }
 }
 
-TEST(Regulate, FirstAppearanceIsRenderedByEveryPolicyOnAnyFrame) {
+TEST(Regulate, FirstAppearanceIsRenderedByEveryPolicyOnAnyFrameButBetweenBeats) {
   LayerAssessment layer = layer_with_error(0);
   layer.has_sprite = false;
   for (const Policy policy : kAllPolicies)
     for (const int frame : {0, 1, 2, 3}) {
+      if (keeps_beat(policy) && frame % 3 != 0) continue;
       const LayerDecision decision = decide(layer, every(policy, 3), frame);
       EXPECT_EQ(decision.action, Action::Rerender) << name(policy) << " frame " << frame;
       EXPECT_EQ(decision.shown_geometric_px, 0);
@@ -77,15 +78,51 @@ TEST(Regulate, ReferenceRendersEvenWhatIsIdentical) {
 }
 
 TEST(PolicyHold, RendersEveryThirdFrameAndLeavesTheSpriteInPlaceBetween) {
-  const LayerAssessment layer = layer_with_error(0.5);
+  LayerAssessment layer = layer_with_error(0.5);
   EXPECT_EQ(decide(layer, every(Policy::Hold, 3), 9).action, Action::Rerender);
   for (const int frame : {10, 11}) {
+    layer.frames_since_render = frame - 9;
     const LayerDecision held = decide(layer, every(Policy::Hold, 3), frame);
     EXPECT_EQ(held.action, Action::Reuse);
     EXPECT_TRUE(held.shown_warp.is_identity());
     EXPECT_DOUBLE_EQ(held.shown_geometric_px, 7.5) << "the error is that of not moving the sprite";
     EXPECT_DOUBLE_EQ(held.warp_geometric_px, 0.5);
   }
+}
+
+// [LS97 7.2]: the picture stands. What left the view since is still shown, what came into view is not.
+TEST(PolicyHold, BetweenBeatsThePictureIsThatOfTheBeat) {
+  LayerAssessment left = layer_with_error(0.5);
+  left.in_view = false;
+  left.frames_since_render = 1;
+  EXPECT_EQ(decide(left, every(Policy::Hold, 3), 10).action, Action::Reuse);
+  EXPECT_EQ(decide(left, every(Policy::Interpolate, 3), 10).action, Action::Drop);
+  EXPECT_EQ(decide(left, every(Policy::Hold, 3), 9).action, Action::Drop) << "the beat sees that it left";
+  LayerAssessment entered = layer_with_error(0);
+  entered.has_sprite = false;
+  for (const Policy policy : {Policy::Hold, Policy::Interpolate}) {
+    const LayerDecision waits = decide(entered, every(policy, 3), 10);
+    EXPECT_EQ(waits.action, Action::Drop);
+    EXPECT_THAT(waits.reason, HasSubstr("first shown on the next beat"));
+    EXPECT_EQ(decide(entered, every(policy, 3), 12).action, Action::Rerender);
+  }
+}
+
+// A sprite of an earlier beat, of a layer that was away on the last one, is never shown again.
+TEST(PolicyHold, NothingStaleReturns) {
+  LayerAssessment stale = layer_with_error(0.5);
+  stale.frames_since_render = 5;
+  for (const Policy policy : {Policy::Hold, Policy::Interpolate})
+    for (const int frame : {10, 11}) EXPECT_EQ(decide(stale, every(policy, 3), frame).action, Action::Drop);
+}
+
+// A run that begins between two beats: its first frame is one.
+TEST(PolicyHold, BeatMayBeAnotherThanTheRegularOne) {
+  LayerAssessment layer = layer_with_error(0.5);
+  const RegulatorOptions options = every(Policy::Hold, 3);
+  EXPECT_EQ(regulate(FrameBeat{10, 10}, {&layer, 1}, options).decisions[0].action, Action::Rerender);
+  layer.frames_since_render = 1;
+  EXPECT_EQ(regulate(FrameBeat{11, 10}, {&layer, 1}, options).decisions[0].action, Action::Reuse);
 }
 
 TEST(PolicyInterpolate, CarriesTheSpriteByTheWarpBetweenRenders) {

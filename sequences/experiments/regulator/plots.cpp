@@ -59,6 +59,7 @@ void add_series(Plot& plot, const RegulatorReport& report, const Scatter& at, co
   plot.series.push_back(sixth);
   plot.series.push_back(series_of(report, at, "oracle"));
   plot.series.push_back(reference_line(at));
+  plot.series.push_back(series_of(report, at, "budget best"));
 }
 
 PlotAxis polygon_axis() { return {"polygons drawn, of reference", "%", true}; }
@@ -98,10 +99,11 @@ Plot polygon_plot(const RegulatorReport& report) {
 }
 
 Plot bound_plot(const RegulatorReport& report) {
-  Plot plot{"largest geometric error against renders (" + report.sequence + "): the oracle is the floor",
-            {"update rate, mean over layers", "%", true},
-            {"largest geometric error displayed", "px", true},
-            {}};
+  Plot plot{
+      "largest geometric error against renders (" + report.sequence + "): the oracle is the floor of renders",
+      {"update rate, mean over layers", "%", true},
+      {"largest geometric error displayed", "px", true},
+      {}};
   const Scatter at{column(report, [](const SettingResult& r) { return 100 * r.mean_update_rate; }),
                    column(report, [](const SettingResult& r) { return r.max_geometric_px; })};
   add_series(plot, report, at, front_of(at));
@@ -135,7 +137,7 @@ Plot lookahead_plot(const LookaheadCurve& curve) {
     plot.series.back().points.push_back(
         {point.frames > 0 ? double(point.frames) : 0.5, 100 * point.mean_update_rate});
   }
-  plot.series.push_back({"oracle: the floor",
+  plot.series.push_back({"oracle: the floor of renders",
                          {{0.5, 100 * curve.oracle_rate}, {last, 100 * curve.oracle_rate}},
                          SeriesStyle::Line,
                          {}});

@@ -116,6 +116,7 @@ Popping PoppingMeter::result() const {
     below += steps_[step];
     popping.p95 = step;
   }
+  if (stepping_.pixels == 0) popping.rms = popping.p95 = NAN;  // nothing was seen, which is not: no step
   return popping;
 }
 

@@ -55,10 +55,11 @@ struct ConsecutiveFrames {
 };
 
 struct Popping {
-  double rms = 0, p95 = 0, elsewhere_rms = 0;  ///< code values
-  double stepping_share = 0;                   ///< pixels of A over all pixels, 0 … 1
-  int frames = 0;                              ///< pairs of frames that were measured
-  int frames_with_steps = 0;                   ///< of them, those with an A that is not empty
+  double rms = 0, p95 = 0;    ///< code values; NaN where no sprite was drawn again in a measured frame
+  double elsewhere_rms = 0;   ///< code values
+  double stepping_share = 0;  ///< pixels of A over all pixels, 0 … 1
+  int frames = 0;             ///< pairs of frames that were measured
+  int frames_with_steps = 0;  ///< of them, those with an A that is not empty
 };
 
 /// Gathers the steps of one run. Memory: a histogram, however long the run. Sums are of whole numbers, so the

@@ -6,7 +6,7 @@
 /// - regulator.csv: one line per setting, what was drawn, what it cost, how far it is from the truth
 /// - regulator.svg: FLIP against measured time per frame; the Pareto front is marked
 /// - regulator-polygons.svg: FLIP against polygons drawn, the same without the noise of a clock
-/// - regulator-bound.svg: largest geometric error displayed against renders; the oracle is the floor
+/// - regulator-bound.svg: largest geometric error displayed against renders; the oracle is the floor of renders
 /// - regulator-popping.svg: step of the error at a re-render against polygons drawn (popping.h)
 /// - lookahead.csv, lookahead.svg: renders against N of lookahead, between threshold and oracle
 /// - calibration.csv: one line per sample, fiducials and image error (calibration.h)
@@ -14,7 +14,9 @@
 /// - regulator.json: talisman.regulator/1, all of it but the samples
 ///
 /// Beside each SVG lies a CSV with the points that it shows. Columns named `wall_…` are measured times; all
-/// else is the same in every run.
+/// else is the same in every run. The oracle is a floor of renders alone: it counts a small sprite and a large one
+/// alike, and may take more polygons or pixels than another schedule. Popping is missing ('-', null) where no sprite
+/// was drawn again in the frames that were compared.
 
 #include <iosfwd>
 #include <string>

@@ -42,6 +42,7 @@ void SettingRun::count() {
   add_decisions(summary_, report_, state_);
   summary_.frames.push_back(line_of(report_));
   for (const regulator::LayerDecision& decision : report_.plan.decisions) chunks_ += decision.cost.chunks;
+  for (const ShadowMapRow& map : report_.shadow_maps) chunks_ += map.decision.cost.chunks;
 }
 
 void SettingRun::judge(const ConsecutiveFrames& truth) {

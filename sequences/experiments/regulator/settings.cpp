@@ -16,7 +16,8 @@ using regulator::RegulatorOptions;
 RegulatorOptions under(const RegulatorOptions& base, Policy policy) {
   RegulatorOptions options = base;
   options.policy = policy;
-  options.budget.polygons = options.budget.pixels = regulator::kNoLimit;
+  options.budget.polygons = options.budget.pixels = options.budget.chunks = regulator::kNoLimit;
+  options.budget.ms = regulator::kNoLimitMs;
   return options;
 }
 
@@ -39,11 +40,12 @@ void add_thresholds(std::vector<RegulatorSetting>& settings, const RegulatorOpti
 }
 
 void add_budgets(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base,
-                 double polygons_per_frame) {
+                 double polygons_per_frame, regulator::ChoiceRule choice, const std::string& series) {
   for (const double percent : compared_budgets()) {
     RegulatorOptions options = under(base, Policy::Budget);
     options.budget.polygons = std::llround(polygons_per_frame * percent / 100);
-    settings.push_back({"budget", "%", percent, options});
+    options.budget.choice = choice;
+    settings.push_back({series, "%", percent, options});
   }
 }
 
@@ -68,7 +70,8 @@ std::vector<RegulatorSetting> regulator_settings(const RegulatorOptions& base, d
   add_thresholds(settings, base, Policy::Threshold, "threshold");
   add_thresholds(settings, base, Policy::Lookahead, "lookahead " + std::to_string(kComparedLookahead));
   add_thresholds(settings, base, Policy::Oracle, "oracle");
-  add_budgets(settings, base, polygons_per_frame);
+  add_budgets(settings, base, polygons_per_frame, regulator::ChoiceRule::Paper, "budget");
+  add_budgets(settings, base, polygons_per_frame, regulator::ChoiceRule::Best, "budget best");
   return settings;
 }
 

@@ -95,8 +95,7 @@ Ranking rank(const std::vector<UpdateCurve>& curves, double tolerance) {
   Ranking ranking;
   std::vector<std::size_t> telling;
   for (std::size_t t = 0; t < aff->renders.size(); ++t)
-    if (std::any_of(curves.begin(), curves.end(), [&](auto& c) { return c.renders[t] != aff->renders[t]; }))
-      telling.push_back(t);
+    if (aff->renders[t] > 1 && aff->renders[t] < aff->frames) telling.push_back(t);
   ranking.thresholds_used = static_cast<int>(telling.size());
   for (const UpdateCurve& curve : curves) {
     double sum = 0;

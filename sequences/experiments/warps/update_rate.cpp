@@ -135,6 +135,7 @@ std::vector<UpdateCurve> update_curves(const CapturedAnimation& animation,
   oneapi::tbb::parallel_for(std::size_t{0}, curves.size(), [&](std::size_t k) {
     UpdateCounter counter(animation, curves[k]);
     result[k].curve = curves[k];
+    result[k].frames = animation.frames();
     for (const double threshold : thresholds_px) result[k].renders.push_back(counter.renders(threshold));
   });
   return result;

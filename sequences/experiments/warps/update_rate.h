@@ -82,6 +82,7 @@ std::vector<warp::Curve> all_curves();
 struct UpdateCurve {
   warp::Curve curve{};
   std::vector<int> renders;  ///< one per threshold
+  int frames = 0;            ///< of the animation: the most that there can be
 };
 
 /// A figure: all curves over all thresholds. The curves are independent jobs; the result does not depend on

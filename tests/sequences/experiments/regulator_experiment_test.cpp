@@ -61,17 +61,20 @@ std::map<double, SettingResult> by_knob(const std::string& series) {
 
 TEST(RegulatorSettings, AreValidDistinctAndBeginWithTheReference) {
   regulator::RegulatorOptions base;
-  base.budget.pixels = 5;  // of a sequence whose own policy is budget; must not limit the others
+  // Of a sequence whose own policy is budget: must not limit the others.
+  base.budget = {5, 5, 5, 0.1};
   const std::vector<RegulatorSetting> settings = regulator_settings(base, 1000);
   EXPECT_EQ(settings.front().options.policy, Policy::Reference);
   std::set<std::string> names;
   for (const RegulatorSetting& setting : settings) {
     EXPECT_EQ(regulator::first_defect(setting.options), "");
     EXPECT_EQ(setting.options.budget.pixels, regulator::kNoLimit);
+    EXPECT_EQ(setting.options.budget.chunks, regulator::kNoLimit);
+    EXPECT_EQ(setting.options.budget.ms, regulator::kNoLimitMs);
     names.insert(setting.series + " " + setting.knob());
   }
   EXPECT_EQ(names.size(), settings.size());
-  EXPECT_EQ(settings.size(), 1u + 4 + 4 + 6 + 6 + 6 + 5);
+  EXPECT_EQ(settings.size(), 1u + 4 + 4 + 6 + 6 + 6 + 5 + 5);
 }
 
 TEST(RegulatorSettings, BudgetsAreSharesOfTheReference) {

@@ -227,9 +227,9 @@ TEST(QualityAtRate, EveryFrameRenderedIsTheReference) {
 
 // --- The ranking
 
-std::vector<UpdateCurve> made_up(const std::map<Curve, std::vector<int>>& renders) {
+std::vector<UpdateCurve> made_up(const std::map<Curve, std::vector<int>>& renders, int frames = 100) {
   std::vector<UpdateCurve> curves;
-  for (const auto& [curve, counts] : renders) curves.push_back({curve, counts});
+  for (const auto& [curve, counts] : renders) curves.push_back({curve, counts, frames});
   return curves;
 }
 
@@ -239,7 +239,7 @@ TEST(Rank, OrdersByGeometricMeanAndSplitsAtTheTolerance) {
                                         {Curve::aff, {100, 10, 5}},
                                         {Curve::affi, {100, 10, 5}},
                                         {Curve::per, {100, 5, 5}}}));
-  // The first threshold tells nothing apart and does not count: √(1/2 · 1) for per.
+  // At the first threshold aff draws every frame, which does not count: √(1/2 · 1) for per.
   EXPECT_EQ(ranking.thresholds_used, 2);
   EXPECT_DOUBLE_EQ(ranking.ratio(Curve::trn), 4);
   EXPECT_DOUBLE_EQ(ranking.ratio(Curve::per), std::sqrt(0.5));
@@ -249,10 +249,18 @@ TEST(Rank, OrdersByGeometricMeanAndSplitsAtTheTolerance) {
 }
 
 TEST(Rank, CurvesThatAreAllAlikeAreOneCluster) {
-  const Ranking ranking = rank(made_up({{Curve::trn, {9, 1}}, {Curve::aff, {9, 1}}}));
+  const Ranking ranking = rank(made_up({{Curve::trn, {9, 1}}, {Curve::aff, {9, 1}}}, 9));
   EXPECT_EQ(ranking.thresholds_used, 0);
   EXPECT_EQ(ranking.ratio(Curve::trn), 1);
   EXPECT_EQ(ranking.clusters.size(), 1u);
+}
+
+// Where aff draws once or always its rate says nothing of it, even if other curves differ there; where it draws in
+// between, a threshold counts even if all are alike.
+TEST(Rank, CountsTheThresholdsAtWhichAffineDrawsMoreThanOnceAndNotAlways) {
+  const Ranking ranking = rank(made_up({{Curve::trn, {10, 8, 4, 3}}, {Curve::aff, {10, 4, 4, 1}}}, 10));
+  EXPECT_EQ(ranking.thresholds_used, 2);
+  EXPECT_DOUBLE_EQ(ranking.ratio(Curve::trn), std::sqrt(2.0));
 }
 
 /// The published clusters of figure 15, as counts.
