@@ -27,8 +27,8 @@ constexpr double kFarAway = 2000;
 /// Answers one path with other bytes than the file has.
 class ChangedFile : public RecordedFiles {
  public:
-  ChangedFile(FileUses& files, std::string path, std::string content)
-      : RecordedFiles(files), path_(std::move(path)), content_(std::move(content)) {}
+  ChangedFile(const ModelPlace& model, FileUses& files, std::string content)
+      : RecordedFiles(model, files), path_(model.path), content_(std::move(content)) {}
   Assimp::IOStream* Open(const char* file, const char* mode = "rb") override {
     if (path_ != file) return RecordedFiles::Open(file, mode);
     return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content_.data()),
@@ -137,12 +137,12 @@ bool says_axes(const aiScene& scene) {
 
 }  // namespace
 
-dvec3 use_local_origin(Assimp::Importer& importer, const std::string& path, FileUses& files) {
-  if (!is_obj(path)) return dvec3(0);
-  files.look_for(path);
-  const std::string text = text_of_file(path);
+dvec3 use_local_origin(Assimp::Importer& importer, const ModelPlace& model, FileUses& files) {
+  if (!is_obj(model.path)) return dvec3(0);
+  files.look_for(model.path);
+  const std::string text = text_of_file(model.path);
   const dvec3 origin = local_origin(text);
-  if (origin != dvec3(0)) importer.SetIOHandler(new ChangedFile(files, path, moved_to(origin, text)));
+  if (origin != dvec3(0)) importer.SetIOHandler(new ChangedFile(model, files, moved_to(origin, text)));
   return origin;
 }
 

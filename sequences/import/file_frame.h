@@ -14,7 +14,7 @@
 #include <assimp/Importer.hpp>
 
 #include "layers/scene.h"
-#include "sequences/files/file_uses.h"
+#include "sequences/import/texture_search.h"
 
 namespace talisman::sequences {
 
@@ -26,7 +26,7 @@ struct FileFrame {
 /// Prepares `importer` to read the file around a local origin, which is returned; (0, 0, 0) where nothing is
 /// gained by it. Cost: of an OBJ file, one reading of its lines.
 /// What is opened is noted in `files`.
-layers::dvec3 use_local_origin(Assimp::Importer& importer, const std::string& path, FileUses& files);
+layers::dvec3 use_local_origin(Assimp::Importer& importer, const ModelPlace& model, FileUses& files);
 
 /// Axes and units by the scene's metadata; `origin` as above.
 FileFrame file_frame(const aiScene& scene, const layers::dvec3& origin);

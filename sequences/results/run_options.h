@@ -17,6 +17,7 @@ struct RunOptions {
   bool plan_only = false;  ///< decisions and costs without pixels
   bool separate = false;   ///< also each shade sprite alone, and the sums, in DIR/separate
   bool video = false, overlay = false, quality = false, resume = false;
+  bool force = false;  ///< also into a folder that holds other files
   ProgressKind progress = ProgressKind::Auto;
 };
 

@@ -90,6 +90,7 @@ void add_decisions(Summary& summary, const FrameReport& report, const PipelineSt
     if (d.action != regulator::Action::Rerender) continue;
     ++layer.renders;
     const layers::ivec2 size = state.memory[d.layer].placement.size_px;
+    layer.is_capped |= state.memory[d.layer].placement.resolution_reduced;
     if (std::int64_t{size.x} * size.y > std::int64_t{layer.sprite_px.x} * layer.sprite_px.y)
       layer.sprite_px = size;
     const layers::Layer& drawn = report.layers[d.layer];
