@@ -273,12 +273,11 @@ ImportedModel read_with_assimp(const ModelPlace& place) {
   Assimp::Importer importer;
   set_options(importer);
   importer.SetIOHandler(new RecordedFiles(place, files));  // it belongs to the importer
-  const layers::dvec3 origin = use_local_origin(importer, place, files);
   std::vector<std::string> losses;
   const aiScene* from = read_file(importer, place.path, losses);
   Import import(*from, place, files);
   import.model.warnings = losses;
-  import_nodes(import, from->mRootNode, import_frame(import, file_frame(*from, origin)), "", 0);
+  import_nodes(import, from->mRootNode, import_frame(import, file_frame(*from)), "", 0);
   import_materials(import);
   import_meshes(import);
   drop_empty_parts(import.model.scene);
@@ -287,6 +286,19 @@ ImportedModel read_with_assimp(const ModelPlace& place) {
   import_cameras(import);
   if (import.model.scene.parts.empty()) throw InputError("has no triangles, rule: a model has at least one");
   import.model.files = files.take();
+  return std::move(import.model);
+}
+
+ImportedModel with_assimp_materials(const ModelPlace& place, const std::string& content, FileUses& files,
+                                    const std::function<void(const aiScene&)>& look) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new ReplacedModel(place, files, content));
+  const aiScene* from = importer.ReadFile(place.path, 0);
+  if (!from || !from->mRootNode)
+    throw InputError(std::string("its materials cannot be read: ") + importer.GetErrorString());
+  Import import(*from, place, files);
+  import_materials(import);
+  look(*from);
   return std::move(import.model);
 }
 

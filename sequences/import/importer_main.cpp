@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// talisman_import PATH SECONDS MEGABYTES [FOLDER…]: reads a model (glTF 2 by a reader made for it, all others with
+// talisman_import PATH SECONDS MEGABYTES [FOLDER…]: reads a model (glTF 2 and OBJ by readers made for them, all others with
 // assimp) and writes it to stdout as a scene stream. FOLDER: where else files that it names may lie. Started by
 // import_model; limits itself first, so that nothing in the file can take more than that.
 
@@ -16,6 +16,7 @@
 
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/gltf_scene.h"
+#include "sequences/import/obj_scene.h"
 #include "sequences/import/scene_stream.h"
 
 namespace {
@@ -42,8 +43,9 @@ void limit_ourselves(int seconds, long megabytes) {
 
 /// glTF 1 has the same extensions, and assimp reads it.
 talisman::sequences::ImportedModel read_model(const talisman::sequences::ModelPlace& place) {
-  return talisman::sequences::is_gltf2(place.path) ? talisman::sequences::read_gltf(place)
-                                                   : talisman::sequences::read_with_assimp(place);
+  if (talisman::sequences::is_gltf2(place.path)) return talisman::sequences::read_gltf(place);
+  if (talisman::sequences::is_obj(place.path)) return talisman::sequences::read_obj(place);
+  return talisman::sequences::read_with_assimp(place);
 }
 
 int fail(const char* what) {

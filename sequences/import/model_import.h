@@ -6,12 +6,12 @@
 /// (scene_stream.h); the parent checks every length and every index again.
 ///
 /// What is made of a file:
-///   readers    glTF 2 by one made for it (gltf_scene.h), everything else by assimp
+///   readers    glTF 2 and OBJ by their own (gltf_scene.h, obj_scene.h), everything else by assimp
 ///   geometry   triangles; where the file has no normals flat ones (glTF) or smooth ones (others); points and
 ///              lines are not drawn, which is said
 ///   colours    linear light; glTF is linear already, other formats are taken as sRGB, vertex colours too
 ///   places     metres, y up: FBX axes and units are applied; an OBJ far from its origin is read around a
-///              local one (file_frame.h)
+///              local one (obj_scene.h)
 ///   PBR        pbr_surface.h; metalness and occlusion maps in the colour texture (gltf_baked_maps.h), roughness
 ///              maps as their mean; emissive maps; normal maps are not drawn, which is said
 ///   compressed meshopt and draco (gltf_compression.h)
