@@ -5,6 +5,7 @@
 #include "chunker/shadow_map.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
+#include "layers/vectors.h"
 
 namespace talisman::chunker {
 namespace {
@@ -12,11 +13,10 @@ namespace {
 using layers::dvec3;
 using layers::vec3;
 
-bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
-
 bool finite(const layers::LightState& light) {
-  return finite(light.position) && finite(light.direction) && finite(dvec3(light.color)) &&
-         std::isfinite(light.inner_cone_rad) && std::isfinite(light.outer_cone_rad);
+  return layers::is_finite(light.position) && layers::is_finite(light.direction) &&
+         layers::is_finite(dvec3(light.color)) && std::isfinite(light.inner_cone_rad) &&
+         std::isfinite(light.outer_cone_rad);
 }
 
 bool wants_shadows(ShadeTerm term) {

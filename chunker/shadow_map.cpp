@@ -13,6 +13,7 @@
 #include "chunker/shadow_view.h"
 #include "chunker/transform.h"
 #include "layers/check.h"
+#include "layers/vectors.h"
 
 namespace talisman::chunker {
 namespace {
@@ -25,8 +26,6 @@ constexpr double kWidestTan = 2.75;        // tan 70°: the most that one perspe
 constexpr double kNearShare = 1e-5;        // near plane, of the distance to the farthest caster
 constexpr double kSteepestTexels = 16;     // the slope's bias stops growing here
 constexpr double kLookupSample = 3.0 / 8;  // place in a texel of the one sample that decides
-
-bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 struct Caster {
   const layers::Mesh* mesh = nullptr;
@@ -61,13 +60,13 @@ template <typename Visit>
 void for_each_point(std::span<const Caster> casters, const Visit& visit) {
   for (const Caster& caster : casters)
     for (const dvec3& p : caster.world)
-      if (finite(p)) visit(p);
+      if (layers::is_finite(p)) visit(p);
 }
 
 /// Depth that grows towards the light and is linear on the map: 1/w, or -z.
 ProjectedVertex project_point(const FaceView& face, const dvec3& p) {
   if (!face.orthographic) return project(face.view, p);
-  ProjectedVertex v = project(face.view, finite(p) ? dvec3(p.x, p.y, 1) : p);
+  ProjectedVertex v = project(face.view, layers::is_finite(p) ? dvec3(p.x, p.y, 1) : p);
   v.depth = static_cast<float>(-p.z);
   return v;
 }
@@ -195,8 +194,8 @@ std::vector<float> draw_depths(const FaceView& face, const std::vector<Triangle>
 }
 
 bool usable(const layers::LightState& light) {
-  return finite(light.position) && finite(light.direction) && std::isfinite(light.outer_cone_rad) &&
-         glm::length(light.direction) > 0;
+  return layers::is_finite(light.position) && layers::is_finite(light.direction) &&
+         std::isfinite(light.outer_cone_rad) && glm::length(light.direction) > 0;
 }
 
 }  // namespace

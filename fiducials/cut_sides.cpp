@@ -80,7 +80,7 @@ Depth depth_now(const Side& side, const Warp& warp, const RectD& visible) {
   return depth_beyond({warp(side.from), warp(side.to), warp(side.inside)}, visible);
 }
 
-Visibility not_computed(std::string_view why) {
+Visibility no_cut_sides(std::string_view why) {
   Visibility v;
   v.why_not = why;
   return v;
@@ -90,10 +90,10 @@ Visibility not_computed(std::string_view why) {
 
 Visibility visibility_of(const LayerState& then, const LayerState& now, const SpritePlacement& placement,
                          const Warp& warp) {
-  if (placement.empty()) return not_computed("nothing was drawn");
-  if (!placement.clipped.any()) return not_computed("no side of the sprite was cut off");
+  if (placement.empty()) return no_cut_sides("nothing was drawn");
+  if (!placement.clipped.any()) return no_cut_sides("no side of the sprite was cut off");
   const RectD visible_then = visible_rect(then), visible_now = visible_rect(now);
-  if (visible_now.empty()) return not_computed("the layer is out of view");
+  if (visible_now.empty()) return no_cut_sides("the layer is out of view");
   Visibility result;
   result.computed = true;
   result.where_px = (visible_now.lo + visible_now.hi) / 2.0;

@@ -26,7 +26,7 @@ using layers::LightState;
 
 constexpr double kWorstAngle = std::numbers::pi;
 
-Photometric not_computed(std::string_view why) {
+Photometric no_photometric(std::string_view why) {
   Photometric p;
   p.why_not = why;
   return p;
@@ -229,9 +229,9 @@ double position_change_rad(const dvec3& then_offset, const dvec3& now_offset, do
 Photometric photometric_of(const LayerState& then, const LayerState& now, const LayerBound& bound,
                            const PhotometricOptions& options) {
   if (!layers::is_built(layers::Effect::ColorWarp) || !bound.surface)
-    return not_computed(bound.surface_why_not);
+    return no_photometric(bound.surface_why_not);
   if (now.point_colors.empty() || then.point_colors.size() != now.point_colors.size())
-    return not_computed("the layer has no characteristic points");
+    return no_photometric("the layer has no characteristic points");
   Photometric result;
   result.computed = true;
   sample_points(then, now, bound, options, result);

@@ -16,7 +16,7 @@ using layers::dvec4;
 using layers::LayerState;
 using layers::Polyhedron;
 
-TurnedFaces not_computed(std::string_view why) {
+TurnedFaces no_turned_faces(std::string_view why) {
   TurnedFaces t;
   t.why_not = why;
   return t;
@@ -85,9 +85,9 @@ Shown shown_part(const LayerState& state, std::vector<dvec4> polygon) {
 }  // namespace
 
 TurnedFaces turned_faces_of(const LayerState& then, const LayerState& now, const Polyhedron& hull) {
-  if (then.world_from_body.empty() || now.world_from_body.empty()) return not_computed("not asked for");
+  if (then.world_from_body.empty() || now.world_from_body.empty()) return no_turned_faces("not asked for");
   if (now.world_points.empty() || then.world_points.size() != now.world_points.size())
-    return not_computed("the layer has no characteristic points");
+    return no_turned_faces("the layer has no characteristic points");
   TurnedFaces turned;
   turned.computed = true;
   const std::vector<double> before = facing(then, hull), after = facing(now, hull);

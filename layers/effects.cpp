@@ -7,12 +7,11 @@
 #include "layers/light_change.h"
 #include "layers/scene.h"
 #include "layers/shading.h"
+#include "layers/vectors.h"
 
 namespace talisman::layers {
 
 namespace {
-
-bool is_zero(const vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 
 bool has_lights(const Scene& scene) { return !scene.lights.empty(); }
 

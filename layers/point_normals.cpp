@@ -13,7 +13,7 @@ namespace {
 
 /// Scaled by its largest entry first: areas of a huge or tiny polyhedron have squares that over- or
 /// underflow.
-dvec3 unit_or_zero(const dvec3& v) {
+dvec3 direction_or_zero(const dvec3& v) {
   const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
   if (!(largest > 0 && std::isfinite(largest))) return dvec3(0.0);
   return normalize(v / largest);
@@ -44,7 +44,7 @@ void visit_face_areas(std::span<const dvec3> points, const Polyhedron& hull,
 void point_away_from_middle(std::span<const dvec3> points, std::span<dvec3> normals) {
   dvec3 middle(0.0);
   for (const dvec3& p : points) middle += p / static_cast<double>(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) normals[i] = unit_or_zero(points[i] - middle);
+  for (std::size_t i = 0; i < points.size(); ++i) normals[i] = direction_or_zero(points[i] - middle);
 }
 
 }  // namespace
@@ -71,7 +71,7 @@ void point_normals(std::span<const dvec3> points, const Polyhedron& hull,
   });
   bool some = false;
   for (dvec3& normal : normals) {
-    normal = unit_or_zero(normal);
+    normal = direction_or_zero(normal);
     some = some || normal != dvec3(0.0);
   }
   if (!some) point_away_from_middle(points, normals);

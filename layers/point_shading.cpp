@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/power.h"
+#include "layers/vectors.h"
 
 namespace talisman::layers {
 namespace {
@@ -15,8 +16,6 @@ namespace {
 constexpr std::size_t kMostTexelsRead = 65536;
 
 /// One test for all three: what is not finite leaves no finite difference from itself.
-bool is_finite(const dvec3& v) { return (v.x - v.x) + (v.y - v.y) + (v.z - v.z) == 0; }
-
 dvec3 unit_or_zero(const dvec3& v) {
   const double length = glm::length(v);
   return length > 0 && std::isfinite(length) ? v * (1 / length) : dvec3(0.0);

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/check.h"
+#include "layers/vectors.h"
 
 namespace talisman::layers {
 namespace {
@@ -87,6 +88,7 @@ std::vector<int> face_with_normal(const std::vector<dvec3>& points, const dvec3&
   }
   std::sort(by_angle.begin(), by_angle.end());
   std::vector<int> face;
+  face.reserve(by_angle.size());
   for (const auto& [angle, i] : by_angle) face.push_back(i);
   return face;
 }
@@ -204,8 +206,6 @@ Cuts cuts_for(std::span<const dvec3> points, const Box& box, BoundKind kind) {
   }
   return {};
 }
-
-bool is_finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // ---- layers
 // ----------------------------------------------------------------------------------------------------

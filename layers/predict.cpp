@@ -15,7 +15,7 @@ namespace talisman::layers {
 namespace {
 
 /// An axis shorter than this share of the longest one has no direction to rely on.
-constexpr double kFlat = 1e-9;
+constexpr double kFlatStretch = 1e-9;
 
 /// M = rotation · stretch, about an origin.
 struct Placed {
@@ -36,16 +36,16 @@ std::optional<Placed> placed(const dmat4& m) {
   const dmat3 linear(m);
   const double longest = std::max({length(linear[0]), length(linear[1]), length(linear[2])});
   const double x = length(linear[0]);
-  if (!(longest > 0) || !(x > kFlat * longest)) return std::nullopt;
+  if (!(longest > 0) || !(x > kFlatStretch * longest)) return std::nullopt;
   dmat3 r;
   r[0] = linear[0] / x;
   const dvec3 rest = linear[1] - r[0] * dot(r[0], linear[1]);
   const double y = length(rest);
-  if (!(y > kFlat * longest)) return std::nullopt;
+  if (!(y > kFlatStretch * longest)) return std::nullopt;
   r[1] = rest / y;
   r[2] = cross(r[0], r[1]);
   const dmat3 stretch = transpose(r) * linear;
-  if (!(std::fabs(stretch[2][2]) > kFlat * longest)) return std::nullopt;
+  if (!(std::fabs(stretch[2][2]) > kFlatStretch * longest)) return std::nullopt;
   return Placed{r, stretch, dvec3(m[3])};
 }
 

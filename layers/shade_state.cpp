@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "layers/animation.h"
 #include "layers/built_effects.h"
 #include "layers/shading.h"
 
@@ -52,9 +53,6 @@ dvec3 hit_along(const Plane& plane, const dvec3& from, const dvec3& direction) {
 /// Effects that a build leaves out touch no layer.
 bool looks_up_shadows(const Layer& layer) { return is_built(Effect::ShadowMap) && !layer.casters.empty(); }
 bool mirrors(const Layer& layer) { return is_built(Effect::ReflectionMap) && layer.holds.reflection; }
-bool is_shadow(const Layer& layer) {
-  return is_built(Effect::ShadowLayer) && layer.kind == LayerKind::Shadow;
-}
 bool is_highlight(const Layer& layer) {
   return is_built(Effect::SpecularLayer) && layer.kind == LayerKind::Specular;
 }
@@ -199,9 +197,32 @@ bool mirrors_lit_parts(const Scene& scene, const LayerSet& set, const Layer& lay
                      [&](int id) { return any_part(scene, set.layers[id], is_lit); });
 }
 
+/// Is the layer an aggregate in which the renderer blends what the compositor blends while it is apart?
+bool blends_textures(const LayerSet& set, const Layer& layer) {
+  return is_built(Effect::TextureLayers) &&
+         std::any_of(layer.members.begin(), layer.members.end(),
+                     [&](int member) { return set.layers[member].factored.second_texture; });
+}
+
+/// The factors of the textures of an aggregate's members, one matrix each: they tell apart what matrices do.
+void append_blends(const SceneFrame& frame, const LayerSet& set, const Layer& aggregate,
+                   std::vector<dmat4>& matrices) {
+  for (const int member : aggregate.members) {
+    dmat4 factors(0.0);
+    int next = 0;
+    for (std::size_t k = member; k < set.layers.size(); ++k) {
+      const Layer& held = set.layers[k];
+      if (held.id != member && held.base != member) break;
+      if (!held.gain.values.empty()) factors[0][next++] = value_at(held.gain, frame.time_s);
+    }
+    if (next > 0) matrices.push_back(factors);
+  }
+}
+
 std::vector<dmat4> influence_matrices(const SceneFrame& frame, const LayerSet& set, const Layer& layer) {
   std::vector<dmat4> matrices;
   if (looks_up_shadows(layer)) matrices = part_matrices(frame, set.casting_parts);
+  if (blends_textures(set, layer)) append_blends(frame, set, layer, matrices);
   if (!is_built(Effect::ReflectionMap)) return matrices;
   for (const int id : layer.reflected) {
     const std::vector<dmat4> of_layer = part_matrices(frame, set.layers[id].parts);
@@ -222,9 +243,10 @@ void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<
   for (const Layer& layer : set.layers) {
     LayerState& state = states[layer.id];
     if (state.layer != layer.id) continue;  // an aggregate that does not exist now
-    if (is_shadow(layer)) state.lights = {frame.lights[layer.light]};
     if (mirrors_lit_parts(*frame.scene, set, layer)) state.lights = frame.lights;
-    if (!looks_up_shadows(layer) && layer.reflected.empty() && !is_highlight(layer)) continue;
+    if (!looks_up_shadows(layer) && layer.reflected.empty() && !is_highlight(layer) &&
+        !blends_textures(set, layer))
+      continue;
     state.world_from_influence = influence_matrices(frame, set, layer);
     const Receiver receiver(frame, set, states, layer);
     state.world_from_receiver = receiver.world_from_receiver();

@@ -32,8 +32,9 @@ namespace talisman::layers {
 LayerState shade_state(const LayerState& base, const Layer& shade);
 
 /// Fills world_from_influence, world_from_receiver and traces of those states whose layers hold a term that
-/// needs them (also Shadow's lights: only its own), from the characteristic points of all layers. `states` by
-/// layer id. Nothing is done or allocated for other layers. Cost: O(traced points).
+/// needs them, from the characteristic points of all layers. `states` by layer id. A shadow layer keeps all
+/// lights of its base: its alpha is the share that one light has in all of them. Nothing is done or allocated
+/// for other layers. Cost: O(traced points).
 void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<LayerState> states);
 
 }  // namespace talisman::layers

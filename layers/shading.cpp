@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layers/shading.h"
+#include "layers/vectors.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +12,7 @@ namespace talisman::layers {
 
 namespace {
 
-constexpr double kFlat = 1e-5;  ///< of the extent: what files call flat
-
-bool is_zero(const vec3& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
+constexpr double kFlatSurface = 1e-5;  ///< of the extent: what files call flat
 
 const Material* material_of(const Scene& scene, const Part& part) {
   return part.material >= 0 ? &scene.materials[part.material] : nullptr;
@@ -240,6 +239,7 @@ void renumber(std::vector<Layer>& layers) {
 /// Each render of a mirror draws what it mirrors once more.
 void add_mirrored_polygons(std::vector<Layer>& layers) {
   std::vector<int> own;
+  own.reserve(layers.size());
   for (const Layer& layer : layers) own.push_back(layer.polygons);
   for (Layer& layer : layers)
     for (const int id : layer.reflected) layer.polygons += own[id];
@@ -285,11 +285,12 @@ std::optional<SurfacePlane> common_plane(const Scene& scene, std::span<const int
   if (parts.empty() || node < 0) return std::nullopt;
   const Soup soup = soup_of(scene, parts, node);
   const double length = glm::length(soup.area_normal);
-  if (!soup.finite || !(soup.extent > 0) || !(length > kFlat * soup.extent * soup.extent))
+  if (!soup.finite || !(soup.extent > 0) || !(length > kFlatSurface * soup.extent * soup.extent))
     return std::nullopt;
   SurfacePlane plane{node, soup.points.front(), soup.area_normal / length};
   for (const dvec3& p : soup.points)
-    if (!(std::fabs(glm::dot(p - plane.point, plane.normal)) <= kFlat * soup.extent)) return std::nullopt;
+    if (!(std::fabs(glm::dot(p - plane.point, plane.normal)) <= kFlatSurface * soup.extent))
+      return std::nullopt;
   return plane;
 }
 

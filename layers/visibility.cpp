@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/check.h"
+#include "layers/vectors.h"
 #include "layers/visibility_order.h"
 #include "layers/visibility_relations.h"
 
@@ -36,8 +37,6 @@ struct HeldCycle {
   std::vector<int> layers;  ///< ascending
   long frame = 0;           ///< when they last did
 };
-
-bool finite(const dvec3& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 bool is_subset(const std::vector<int>& inner, const std::vector<int>& outer) {
   return std::includes(outer.begin(), outer.end(), inner.begin(), inner.end());
@@ -257,6 +256,7 @@ std::vector<HeldCycle> VisibilitySorter::State::explain_component(MergedComponen
   }
   for (const LineRange& range : truly.cyclic) {
     std::vector<int> layers;
+    layers.reserve(range.count);
     for (int k = 0; k < range.count; ++k) layers.push_back(c.layers[truly.places[range.first + k]]);
     std::erase_if(held_in_it, [&](const HeldCycle& h) { return is_subset(h.layers, layers); });
     held_in_it.push_back({std::move(layers), frame});
@@ -294,7 +294,7 @@ VisibilityOrder VisibilitySorter::sort(const dvec3& eye, std::span<const Occlude
   if (!state_) state_ = std::make_unique<State>(options_);
   State& s = *state_;
   ++s.frame;
-  s.eye = finite(eye) ? eye : dvec3{0, 0, 0};
+  s.eye = is_finite(eye) ? eye : dvec3{0, 0, 0};
   VisibilityCounters counters;
   s.relations.place_eye(s.eye);
   s.place(occluders);

@@ -28,7 +28,7 @@ constexpr float kMarginFrames = 12, kFirstMargin = 0.05f, kMostMargin = 0.25f;
 /// The tree is built anew when its nodes have grown by this factor.
 constexpr double kWorn = 1.3;
 /// Above the rounding of a support, relative to the largest coordinate.
-constexpr double kRounding = 1e-14;
+constexpr double kRoundingOfPlanes = 1e-14;
 constexpr double kLargest = 1e60;
 
 /// What one pass over the points of a body finds.
@@ -56,14 +56,14 @@ Pass pass_over(std::span<const dvec3> points, std::span<const dvec3> before) {
   return pass;
 }
 
-struct Plane {
+struct SeparatingPlane {
   double h = HUGE_VAL;
   dvec3 normal{0, 0, 0};
 };
 
 /// The best plane across an axis between a and conv({e} ∪ b).
-Plane axis_plane(const WorldBounds& a, const WorldBounds& b, const dvec3& eye) {
-  Plane best;
+SeparatingPlane axis_plane(const WorldBounds& a, const WorldBounds& b, const dvec3& eye) {
+  SeparatingPlane best;
   for (int k = 0; k < 3; ++k) {
     const double up = a.hi[k] - std::min(b.lo[k], eye[k]), down = std::max(b.hi[k], eye[k]) - a.lo[k];
     if (std::min(up, down) >= best.h) continue;
@@ -255,7 +255,7 @@ OcclusionRelations::Answer OcclusionRelations::occludes(const Body& front, const
                                                         bool& exact) const {
   const double eye_reach = std::max({std::fabs(eye_.x), std::fabs(eye_.y), std::fabs(eye_.z)});
   const double smaller = std::min(front.size, behind.size);
-  const double rounding = kRounding * std::max({front.reach, behind.reach, eye_reach});
+  const double rounding = kRoundingOfPlanes * std::max({front.reach, behind.reach, eye_reach});
   const double t = touch_ * smaller + rounding;
   const double steps = front.step + behind.step + eye_step_;
   const double axis_slack = t - axis_plane(front.bounds, behind.bounds, eye_).h;

@@ -7,23 +7,23 @@
 namespace talisman::sequences {
 namespace {
 
-ResolvedRun run_of(const Sequence& sequence, const ExperimentOptions& options) {
+ResolvedRun factoring_run(const Sequence& sequence, const ExperimentOptions& options) {
   return experiment_run(sequence, options, experiment_size(sequence, options));
 }
 
-void require_measurable(const Sequence& sequence, const ExperimentOptions& options) {
+void require_factored(const Sequence& sequence, const ExperimentOptions& options) {
   if (!is_factored(sequence))
     throw InputError(
         sequence.name +
         ": no layer factors a shade term, rule: some layer has `shading` that the scene calls for");
-  experiment_frames(run_of(sequence, options), options.quality_every);
+  experiment_frames(factoring_run(sequence, options), options.quality_every);
 }
 
 }  // namespace
 
 FactoringReport measure_factoring_report(const Sequence& sequence, const ExperimentOptions& options) {
-  require_measurable(sequence, options);
-  const ResolvedRun run = run_of(sequence, options);
+  require_factored(sequence, options);
+  const ResolvedRun run = factoring_run(sequence, options);
   FactoringReport report;
   report.sequence = sequence.name;
   report.policy = regulator::name(run.settings.regulator.policy);
@@ -35,7 +35,7 @@ FactoringReport measure_factoring_report(const Sequence& sequence, const Experim
 }
 
 int run_factoring_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out) {
-  const ExperimentCommand<FactoringReport> command{require_measurable, measure_factoring_report};
+  const ExperimentCommand<FactoringReport> command{require_factored, measure_factoring_report};
   return run_experiment(command, options, dir, out);
 }
 

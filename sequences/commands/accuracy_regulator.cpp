@@ -9,18 +9,18 @@ namespace {
 /// Any policy that needs no more options: the settings that are compared have their own.
 constexpr const char* kPolicy = "threshold";
 
-ResolvedRun run_of(const Sequence& sequence, const ExperimentOptions& options) {
+ResolvedRun regulator_run(const Sequence& sequence, const ExperimentOptions& options) {
   return experiment_run(sequence, options, experiment_size(sequence, options), kPolicy);
 }
 
-void require_measurable(const Sequence& sequence, const ExperimentOptions& options) {
-  experiment_frames(run_of(sequence, options), options.quality_every);
+void require_regulator_frames(const Sequence& sequence, const ExperimentOptions& options) {
+  experiment_frames(regulator_run(sequence, options), options.quality_every);
 }
 
 }  // namespace
 
 RegulatorReport measure_regulator_report(const Sequence& sequence, const ExperimentOptions& options) {
-  const ResolvedRun run = run_of(sequence, options);
+  const ResolvedRun run = regulator_run(sequence, options);
   const ProgressKind progress = run.options.progress;
   RegulatorReport report;
   report.sequence = sequence.name;
@@ -40,7 +40,7 @@ RegulatorReport measure_regulator_report(const Sequence& sequence, const Experim
 }
 
 int run_regulator_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out) {
-  const ExperimentCommand<RegulatorReport> command{require_measurable, measure_regulator_report};
+  const ExperimentCommand<RegulatorReport> command{require_regulator_frames, measure_regulator_report};
   return run_experiment(command, options, dir, out);
 }
 

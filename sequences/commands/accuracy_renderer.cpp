@@ -9,7 +9,7 @@
 namespace talisman::sequences {
 namespace {
 
-ResolvedRun run_of(const Sequence& sequence, const ExperimentOptions& options) {
+ResolvedRun renderer_run(const Sequence& sequence, const ExperimentOptions& options) {
   return experiment_run(sequence, options, experiment_size(sequence, options));
 }
 
@@ -24,14 +24,14 @@ std::vector<int> frames_of_run(const ResolvedRun& run, bool is_given) {
   return frames;
 }
 
-void require_measurable(const Sequence& sequence, const ExperimentOptions& options) {
-  drawn_from_nothing(run_of(sequence, options), options);
+void require_renderer_frames(const Sequence& sequence, const ExperimentOptions& options) {
+  drawn_from_nothing(renderer_run(sequence, options), options);
 }
 
 }  // namespace
 
 RendererReport measure_renderer_report(const Sequence& sequence, const ExperimentOptions& options) {
-  const ResolvedRun run = run_of(sequence, options);
+  const ResolvedRun run = renderer_run(sequence, options);
   const Variant given{sequence, run.settings};
   const std::vector<int> frames = sampled_frames(drawn_from_nothing(run, options));
   RendererReport report;
@@ -46,7 +46,7 @@ RendererReport measure_renderer_report(const Sequence& sequence, const Experimen
 }
 
 int run_renderer_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out) {
-  const ExperimentCommand<RendererReport> command{require_measurable, measure_renderer_report};
+  const ExperimentCommand<RendererReport> command{require_renderer_frames, measure_renderer_report};
   return run_experiment(command, options, dir, out);
 }
 

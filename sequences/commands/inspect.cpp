@@ -14,6 +14,7 @@
 #include "sequences/commands/words.h"
 #include "sequences/experiments/variant.h"
 #include "sequences/files/errors.h"
+#include "sequences/files/number_text.h"
 
 namespace talisman::sequences {
 
@@ -56,38 +57,33 @@ Memory memory_of(const layers::Scene& scene) {
 
 bool has_effect(layers::Effect effect) { return built_effects()[static_cast<std::size_t>(effect)]; }
 
-std::string line(const char* pattern, auto... values) {
-  char text[600];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
 std::string layer_lines(const Sequence& s) {
-  std::string text = line("  %-24s %-10s %6s %9s  %s\n", "layer", "group", "parts", "polygons", "motion");
+  std::string text =
+      formatted("  %-24s %-10s %6s %9s  %s\n", "layer", "group", "parts", "polygons", "motion");
   int polygons = 0;
   for (const layers::Layer& layer : s.layers.layers) {
     polygons += layer.polygons;
     const std::string motion = layer.rigid_node >= 0
                                    ? "rigid, follows " + s.scene->nodes[layer.rigid_node].name
                                    : std::string("parts move against each other or deform");
-    text += line("  %-24s %-10s %6zu %9d  %s\n", layer.name.c_str(), name_of(layer.group).c_str(),
-                 layer.parts.size(), layer.polygons, motion.c_str());
+    text += formatted("  %-24s %-10s %6zu %9d  %s\n", layer.name.c_str(), name_of(layer.group).c_str(),
+                      layer.parts.size(), layer.polygons, motion.c_str());
   }
   const Memory memory = memory_of(*s.scene);
-  text += line("\n  %zu layers, %d polygons; meshes %.1f MB, textures %.1f MB", s.layers.layers.size(),
-               polygons, memory.mesh_bytes / 1e6, memory.texture_bytes / 1e6);
+  text += formatted("\n  %zu layers, %d polygons; meshes %.1f MB, textures %.1f MB", s.layers.layers.size(),
+                    polygons, memory.mesh_bytes / 1e6, memory.texture_bytes / 1e6);
   if (s.layers.unassigned_parts == 1) text += "; 1 part is in no layer and is not drawn";
   if (s.layers.unassigned_parts > 1)
-    text += line("; %d parts are in no layer and are not drawn", s.layers.unassigned_parts);
+    text += formatted("; %d parts are in no layer and are not drawn", s.layers.unassigned_parts);
   return text;
 }
 
 std::string effect_lines(const Sequence& s) {
   std::string text = "  effect               called  why\n";
   for (const layers::EffectCall& call : effects_of(s))
-    text += line("  %-20s %-6s  %s%s\n", std::string(layers::name(call.effect)).c_str(),
-                 call.called ? "yes" : "no", call.why.c_str(),
-                 has_effect(call.effect) ? "" : " (not in this build)");
+    text += formatted("  %-20s %-6s  %s%s\n", std::string(layers::name(call.effect)).c_str(),
+                      call.called ? "yes" : "no", call.why.c_str(),
+                      has_effect(call.effect) ? "" : " (not in this build)");
   return text;
 }
 
@@ -103,10 +99,10 @@ std::string order_of(const Sequence& sequence, const InspectOptions& options) {
 }  // namespace
 
 std::string inspection_text(const Sequence& s) {
-  std::string text = line("%s (%s)\n  %d frames at %g/s, %dx%d px, policy %s, warp %s, bound %s\n\n",
-                          s.name.c_str(), s.file.c_str(), s.frames, s.fps, s.display_px.x, s.display_px.y,
-                          std::string(regulator::name(s.regulator.policy)).c_str(), s.warp.c_str(),
-                          name_of(s.bound).c_str());
+  std::string text = formatted("%s (%s)\n  %d frames at %g/s, %dx%d px, policy %s, warp %s, bound %s\n\n",
+                               s.name.c_str(), s.file.c_str(), s.frames, s.fps, s.display_px.x,
+                               s.display_px.y, std::string(regulator::name(s.regulator.policy)).c_str(),
+                               s.warp.c_str(), name_of(s.bound).c_str());
   return text + layer_lines(s) + "\n\n" + effect_lines(s);
 }
 
@@ -157,9 +153,9 @@ std::string profile_text() {
   const regulator::HardwareProfile& profile = regulator::talisman_1996();
   std::string text = std::string(profile.name) + "\n";
   for (const regulator::ProfileNumber& n : profile.numbers)
-    text += line("  %-18s %12g %-18s %-9s  %s\n", std::string(n.name).c_str(), n.value,
-                 std::string(n.unit).c_str(), n.confirmed ? "confirmed" : "assumed",
-                 std::string(n.source).c_str());
+    text += formatted("  %-18s %12g %-18s %-9s  %s\n", std::string(n.name).c_str(), n.value,
+                      std::string(n.unit).c_str(), n.confirmed ? "confirmed" : "assumed",
+                      std::string(n.source).c_str());
   return text;
 }
 

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/files/number_text.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/step.h"
@@ -75,12 +76,6 @@ void add_counters(OrderOverTime& result, const FrameOrder& order) {
   result.slowest_sort_ms = std::max(result.slowest_sort_ms, order.sort_ms);
 }
 
-std::string line(const char* pattern, auto... values) {
-  char text[400];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
 }  // namespace
 
 OrderOverTime order_over_time(const Sequence& sequence, const Settings& settings) {
@@ -101,22 +96,23 @@ OrderOverTime order_over_time(const Sequence& sequence, const Settings& settings
 
 std::string order_text(const Sequence& sequence, const OrderOverTime& order) {
   std::string text =
-      line("%s: visibility order of %d frames, %zu layers; %zu different orders\n\n", sequence.name.c_str(),
-           order.frames, sequence.layers.layers.size(), order.runs.size());
+      formatted("%s: visibility order of %d frames, %zu layers; %zu different orders\n\n",
+                sequence.name.c_str(), order.frames, sequence.layers.layers.size(), order.runs.size());
   text += "  frames       back to front\n";
   for (const OrderRun& run : order.runs)
-    text += line("  %5d-%-5d  ", run.first, run.last) + joined(run.back_to_front) + "\n";
+    text += formatted("  %5d-%-5d  ", run.first, run.last) + joined(run.back_to_front) + "\n";
   text += "\n  merged       into one sprite, and why\n";
   for (const MergedRun& run : order.merged)
-    text += line("  %5d-%-5d  ", run.first, run.last) + joined(run.members) + ": " + run.why + "\n";
+    text += formatted("  %5d-%-5d  ", run.first, run.last) + joined(run.members) + ": " + run.why + "\n";
   if (order.merged.empty()) text += "  never\n";
   if (!order.resolved.empty()) text += "\n  apart        in a cycle, by which expression\n";
   for (const MergedRun& run : order.resolved)
-    text += line("  %5d-%-5d  ", run.first, run.last) + joined(run.members) + ": " + run.why + "\n";
-  text += line("\n  sorted in %d frames, with cycles in %d; %.3f ms a frame on average, %.3f ms at most\n  ",
-               order.frames_sorted, order.frames_with_cycles,
-               order.frames_sorted > 0 ? order.sort_ms / order.frames_sorted : 0, order.slowest_sort_ms);
-  for (const VisibilityField& c : kCounters) text += line("%s %d, ", c.name, order.sum.*c.field);
+    text += formatted("  %5d-%-5d  ", run.first, run.last) + joined(run.members) + ": " + run.why + "\n";
+  text +=
+      formatted("\n  sorted in %d frames, with cycles in %d; %.3f ms a frame on average, %.3f ms at most\n  ",
+                order.frames_sorted, order.frames_with_cycles,
+                order.frames_sorted > 0 ? order.sort_ms / order.frames_sorted : 0, order.slowest_sort_ms);
+  for (const VisibilityField& c : kCounters) text += formatted("%s %d, ", c.name, order.sum.*c.field);
   return text + "merged_parts " + std::to_string(order.merged_parts) + " over all frames\n";
 }
 

@@ -66,28 +66,28 @@ const Table<ModelRecipe>& model_keys() {
 
 namespace {
 
-using Kind = ShapeContent::Kind;
+using ShapeKind = ShapeContent::Kind;
 
 void read_id(const YamlValue& value, ShapeRecipe& shape) {
   only_instance(shape).name = shape.content.material.name = value.text();
 }
 
 void read_box(const YamlValue& value, ShapeRecipe& shape) {
-  shape.content.kind = Kind::Box;
+  shape.content.kind = ShapeKind::Box;
   shape.content.size_m = sides().read(value);
 }
 void read_sphere(const YamlValue& value, ShapeRecipe& shape) {
-  shape.content.kind = Kind::Sphere;
+  shape.content.kind = ShapeKind::Sphere;
   shape.content.size_m = value.is_list() ? sides().read(value) : dvec3(value.number(kPositive));
 }
 void read_cylinder(const YamlValue& value, ShapeRecipe& shape) {
   const dvec2 size = value.pair(kPositive);
-  shape.content.kind = Kind::Cylinder;
+  shape.content.kind = ShapeKind::Cylinder;
   shape.content.size_m = {size.x, size.y, size.x};
 }
 void read_plane(const YamlValue& value, ShapeRecipe& shape) {
   const dvec2 size = value.pair(kPositive);
-  shape.content.kind = Kind::Plane;
+  shape.content.kind = ShapeKind::Plane;
   shape.content.size_m = {size.x, 1, size.y};
 }
 

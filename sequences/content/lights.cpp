@@ -9,7 +9,7 @@ namespace {
 
 using layers::Light;
 using layers::ShadowMapOptions;
-using Keys = Table<LightRecipe>;
+using LightKeys = Table<LightRecipe>;
 
 Format<Light::Kind> kind() {
   using enum Light::Kind;
@@ -32,8 +32,8 @@ const Table<ShadowMapOptions>& shadow_map_keys() {
   return table;
 }
 
-Keys shadow_keys() {
-  return Keys()
+LightKeys shadow_keys() {
+  return LightKeys()
       .key("casts_shadow", at(&LightRecipe::light, &Light::casts_shadow), truth(), "",
            "at most four lights of a scene")
       .key("shadow_map", at(&LightRecipe::light, &Light::shadow), map_of(shadow_map_keys()), "",
@@ -43,8 +43,8 @@ Keys shadow_keys() {
 }
 
 /// Whatever turns or carries it makes it a node, in whose space it shines along -z; else it stands in the world.
-Keys place_keys() {
-  return Keys()
+LightKeys place_keys() {
+  return LightKeys()
       .include(&LightRecipe::motion, motion_keys())
       .placed([](LightRecipe& l, const YamlValue& self) {
         const YamlMap map = self.map();
@@ -60,8 +60,8 @@ Keys place_keys() {
       });
 }
 
-Keys cone_keys() {
-  return Keys()
+LightKeys cone_keys() {
+  return LightKeys()
       .begins([](LightRecipe& l) {
         l.light.inner_cone_rad = glm::radians(20.0);
         l.light.outer_cone_rad = glm::radians(30.0);
@@ -78,8 +78,8 @@ Keys cone_keys() {
 
 const Table<LightRecipe>& light_keys() {
   using layers::Light;
-  static const Keys table =
-      Keys("light")
+  static const LightKeys table =
+      LightKeys("light")
           .key("kind", at(&LightRecipe::light, &Light::kind), kind(), "", "a sun is directional")
           .required()
           .key("name", at(&LightRecipe::light, &Light::name), text(), "",
@@ -89,14 +89,14 @@ const Table<LightRecipe>& light_keys() {
           .key("intensity", &LightRecipe::intensity, number(kNotNegative), "1",
                "factor of the colour: 1 is white where white light falls squarely on white. No light falls "
                "off with distance")
-          .when(is("kind", {"directional"}), Keys()
+          .when(is("kind", {"directional"}), LightKeys()
                                                  .key("direction", at(&LightRecipe::light, &Light::direction),
                                                       direction(), "", "the way the light travels")
                                                  .required())
           .when(is("kind", {"directional", "point", "spot"}), shadow_keys())
           .when(is("kind", {"point", "spot"}), place_keys())
           .when(is("kind", {"point"}),
-                Keys().at_least_one_of({"position", "look_at", "flight", "spin", "carried_by"}))
+                LightKeys().at_least_one_of({"position", "look_at", "flight", "spin", "carried_by"}))
           .when(is("kind", {"spot"}), cone_keys());
   return table;
 }

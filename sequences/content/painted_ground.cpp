@@ -12,14 +12,14 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr const char* kKind = "ground";
+constexpr const char* kGroundKind = "ground";
 
 std::optional<ContentHash> key_of(const TerrainContent& content, const layers::HeightField& field,
                                   const std::vector<GroundWindow>& windows) {
   const auto classes = hash_of_file(content.classes_file);
   if (!classes) return std::nullopt;
   ContentHasher hasher;
-  hasher.add(kKind).add(hash_of_loaded_code()).add(*classes);
+  hasher.add(kGroundKind).add(hash_of_loaded_code()).add(*classes);
   for (const GroundClass& ground : content.classes) {
     for (const int value : ground.rgb) hasher.add(value);
     // The tile of a class that does not occur is not asked for, and may be missing.
@@ -73,7 +73,7 @@ std::vector<layers::Texture> painted_ground(const TerrainContent& content, const
   Cache& cache = program_cache();
   const auto key = cache.is_on() ? key_of(content, field, windows) : std::nullopt;
   if (key)
-    if (const auto bytes = cache.load(kKind, *key)) {
+    if (const auto bytes = cache.load(kGroundKind, *key)) {
       std::vector<layers::Texture> textures = textures_of(*bytes, windows, content.texels_per_cell);
       if (!textures.empty()) return textures;
     }
@@ -83,7 +83,7 @@ std::vector<layers::Texture> painted_ground(const TerrainContent& content, const
   for (const GroundWindow& window : windows)
     textures.push_back(painter.bake(window, content.texels_per_cell));
   // A picture may have been changed while it was read: then the key is not that of what was painted.
-  if (key && key_of(content, field, windows) == key) cache.store(kKind, *key, bytes_of(textures));
+  if (key && key_of(content, field, windows) == key) cache.store(kGroundKind, *key, bytes_of(textures));
   return textures;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/regulator_keys.h"
 
+#include "sequences/content/sequence.h"
+
 #include <limits>
 
 namespace talisman::sequences {
@@ -11,9 +13,8 @@ using regulator::BudgetOptions;
 using regulator::LookaheadOptions;
 using regulator::RegulatorOptions;
 using regulator::Thresholds;
-using Keys = Table<RegulatorOptions>;
+using RegulatorKeys = Table<RegulatorOptions>;
 
-constexpr int kLongestRun_frames = 1'000'000;
 constexpr Range kStretch{1, 1e6};
 
 Format<regulator::Policy> policy() {
@@ -86,17 +87,18 @@ Table<Thresholds> threshold_keys() {
 
 const Table<RegulatorOptions>& regulator_keys() {
   using R = RegulatorOptions;
-  static const Keys table = Keys("regulator")
-                                .key("policy", &R::policy, policy(), "", "what decides")
-                                .key("hold_frames", &R::hold_frames, whole(1, kLongestRun_frames), "frames",
-                                     "policies hold and interpolate: drawn every so many")
-                                .include(&R::thresholds, threshold_keys())
-                                .key("color_warp", &R::color_warp, truth(), "",
-                                     "reused sprites are multiplied with the colour (0 … 1 per channel) that "
-                                     "fits the light now best. "
-                                     "Multipliers only darken; light that grows is drawn again")
-                                .include(&R::lookahead, lookahead_keys())
-                                .include(&R::budget, budget_keys());
+  static const RegulatorKeys table =
+      RegulatorKeys("regulator")
+          .key("policy", &R::policy, policy(), "", "what decides")
+          .key("hold_frames", &R::hold_frames, whole(1, kLongestRun_frames), "frames",
+               "policies hold and interpolate: drawn every so many")
+          .include(&R::thresholds, threshold_keys())
+          .key("color_warp", &R::color_warp, truth(), "",
+               "reused sprites are multiplied with the colour (0 … 1 per channel) that "
+               "fits the light now best. "
+               "Multipliers only darken; light that grows is drawn again")
+          .include(&R::lookahead, lookahead_keys())
+          .include(&R::budget, budget_keys());
   return table;
 }
 

@@ -17,7 +17,6 @@ namespace {
 
 constexpr double kMaxModel_s = 20;   // longer animations are cut
 constexpr double kTurntable_s = 20;  // one turn around a bare model
-constexpr double kMaxFrames = 1e6;
 
 bool is_yaml(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
@@ -123,7 +122,7 @@ void expose(ImportedModel& model, double exposure_lx) {
 int frames_of_model(const layers::Scene& scene, double turntable_s, double fps) {
   const double duration = std::min(scene.duration_s(), kMaxModel_s);
   const double frames = std::round((duration > 0 ? duration : turntable_s) * fps);
-  return static_cast<int>(std::clamp(frames, 1.0, kMaxFrames));
+  return static_cast<int>(std::clamp<double>(frames, 1, kLongestRun_frames));
 }
 
 Sequence load_model(const std::string& path, const ContentOptions& options) {

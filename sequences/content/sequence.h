@@ -20,6 +20,9 @@
 
 namespace talisman::sequences {
 
+/// Some eleven hours at 24 frames a second.
+inline constexpr int kLongestRun_frames = 1'000'000;
+
 /// What is said on the command line about content. What is said goes before the keys of a sequence file.
 struct ContentOptions {
   std::vector<std::string> assets = {};  ///< folders in whose trees files that models name may lie

@@ -12,11 +12,9 @@ namespace talisman::sequences {
 
 namespace {
 
-using File = SequenceFile;
 using layers::ExtentOptions;
 using layers::PlacementOptions;
 
-constexpr int kLongestRun_frames = 1'000'000;
 constexpr int kMaxDisplay_px = 16384;
 constexpr int kMaxDepthOfExtends = 8;
 
@@ -57,11 +55,11 @@ const Table<chunker::CompressionOptions>& compression_keys() {
 /// A member of the settings.
 template <typename Member>
 auto setting(Member Sequence::*member) {
-  return at(&File::settings, member);
+  return at(&SequenceFile::settings, member);
 }
 
 /// Results go into a folder of this name: it must not lead anywhere else.
-void read_name(const YamlValue& value, File& file) {
+void read_name(const YamlValue& value, SequenceFile& file) {
   const std::string name = value.text();
   const bool leads_away =
       name.find('/') != std::string::npos || name.find("..") != std::string::npos || name == ".";
@@ -71,10 +69,10 @@ void read_name(const YamlValue& value, File& file) {
   file.settings.name = name;
 }
 
-Table<File> film_keys() {
-  const auto ignore = [](const YamlValue& value, File&) { value.text(); };
-  const auto packages = [](const YamlValue& list, File&) { texts(0).read(list); };
-  return Table<File>()
+Table<SequenceFile> film_keys() {
+  const auto ignore = [](const YamlValue& value, SequenceFile&) { value.text(); };
+  const auto packages = [](const YamlValue& list, SequenceFile&) { texts(0).read(list); };
+  return Table<SequenceFile>()
       .custom("extends", asset().type, ignore, "",
               "another sequence file, of which this one says only what is different: each key at the top "
               "replaces the base's whole value")
@@ -89,12 +87,12 @@ Table<File> film_keys() {
       .otherwise("none");
 }
 
-Table<File> pipeline_keys() {
+Table<SequenceFile> pipeline_keys() {
   using enum layers::BoundKind;
   std::vector<std::string> curves;
   for (const warp::Curve curve : warp::kAllCurves) curves.emplace_back(warp::name(curve));
-  return Table<File>()
-      .key("order", &File::order, list_of(layer_pair_keys(), 0), "",
+  return Table<SequenceFile>()
+      .key("order", &SequenceFile::order, list_of(layer_pair_keys(), 0), "",
            "pairs of layers, which take precedence over geometry")
       .otherwise("geometry alone")
       .key("cycles", setting(&Sequence::cycles),
@@ -136,13 +134,13 @@ YamlMap read_with_base(const std::string& file, int depth, std::vector<std::stri
 
 }  // namespace
 
-const Table<File>& sequence_keys() {
-  static const Table<File> table =
-      Table<File>("sequence")
+const Table<SequenceFile>& sequence_keys() {
+  static const Table<SequenceFile> table =
+      Table<SequenceFile>("sequence")
           .extends_by("extends")
           .include(film_keys())
-          .include(&File::recipe, scene_keys())
-          .key("layers", &File::layers, list_of(layer_keys()), "", "which parts make up which sprite")
+          .include(&SequenceFile::recipe, scene_keys())
+          .key("layers", &SequenceFile::layers, list_of(layer_keys()), "", "which parts make up which sprite")
           .otherwise("one per moving node, or per top-level node where nothing moves")
           .include(pipeline_keys());
   return table;

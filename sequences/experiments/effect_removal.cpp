@@ -294,22 +294,39 @@ void stop_following_light(regulator::RegulatorOptions& options) {
   options.thresholds.photometric = options.thresholds.light_angle_rad = 0;
 }
 
-void remove(Variant& variant, Effect effect) {
+/// What has to go from the scene, for effects that are called for by that alone; null for others.
+void (*scene_change(Effect effect))(layers::Scene&) {
   switch (effect) {
     case Effect::Texture:
-      return change_scene(variant, remove_textures);
+      return remove_textures;
+    case Effect::Lighting:
+      return remove_lighting;
+    case Effect::SpecularHighlight:
+      return remove_highlights;
+    case Effect::Translucency:
+      return remove_translucency;
+    case Effect::Skinning:
+      return remove_skins;
+    case Effect::ShadowMap:
+      return remove_shadows;
+    case Effect::ReflectionMap:
+      return remove_mirrors;
+    case Effect::EmissiveMap:
+      return remove_emissive_maps;
+    case Effect::Morphing:
+      return remove_morphs;
+    case Effect::LightFalloff:
+      return remove_falloff;
+    default:
+      return nullptr;
+  }
+}
+
+void remove_request(Variant& variant, Effect effect) {
+  switch (effect) {
     case Effect::MipFilter:
       variant.settings.render.mipmaps = false;
       return;
-    case Effect::Lighting:
-      return change_scene(variant, remove_lighting);
-    case Effect::SpecularHighlight:
-      return change_scene(variant, remove_highlights);
-    case Effect::Translucency:
-      keep_casters(variant);
-      return change_scene(variant, remove_translucency);
-    case Effect::Skinning:
-      return change_scene(variant, remove_skins);
     case Effect::LayerResolution:
       return change_preferences(variant, [](LayerPreferences& p) { p.resolution_scale = 1; });
     case Effect::MotionBlur:
@@ -324,25 +341,23 @@ void remove(Variant& variant, Effect effect) {
       stop_following_light(variant.sequence.regulator);
       stop_following_light(variant.settings.regulator);
       return;
-    case Effect::ShadowMap:
-      return change_scene(variant, remove_shadows);
     case Effect::ShadowLayer:
       return remove_shade_layers(variant, LayerKind::Shadow, &layers::ShadingSpec::shadows);
     case Effect::SpecularLayer:
       return remove_shade_layers(variant, LayerKind::Specular, &layers::ShadingSpec::specular);
-    case Effect::ReflectionMap:
-      return change_scene(variant, remove_mirrors);
     case Effect::ReflectionLayer:
       return remove_shade_layers(variant, LayerKind::Reflection, &layers::ShadingSpec::reflection);
-    case Effect::EmissiveMap:
-      return change_scene(variant, remove_emissive_maps);
-    case Effect::Morphing:
-      return change_scene(variant, remove_morphs);
-    case Effect::LightFalloff:
-      return change_scene(variant, remove_falloff);
     case Effect::TextureLayers:
       return remove_shade_layers(variant, LayerKind::Texture, &layers::ShadingSpec::textures);
+    default:
+      TALISMAN_CHECK(false);  // an effect that nothing of the above can leave out
   }
+}
+
+void remove(Variant& variant, Effect effect) {
+  if (effect == Effect::Translucency) keep_casters(variant);
+  if (const auto change = scene_change(effect)) return change_scene(variant, change);
+  remove_request(variant, effect);
 }
 
 }  // namespace

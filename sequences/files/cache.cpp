@@ -25,13 +25,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<char, 8> kMagic{'T', 'L', 'S', 'C', 'A', 'C', 'H', '1'};
+constexpr std::array<char, 8> kCacheMagic{'T', 'L', 'S', 'C', 'A', 'C', 'H', '1'};
 constexpr const char* kExtension = ".entry";
 constexpr const char* kTemporary = ".tmp-";
 constexpr auto kAbandoned = std::chrono::hours(1);  ///< nobody writes one entry for so long
 
 struct Header {
-  std::array<char, 8> magic = kMagic;
+  std::array<char, 8> magic = kCacheMagic;
   ContentHash key, content;
   std::uint64_t bytes = 0;
 };
@@ -48,7 +48,7 @@ std::optional<std::vector<std::uint8_t>> whole_content(std::FILE* file, const Co
   struct stat status {};
   if (::fstat(fileno(file), &status) != 0 || !S_ISREG(status.st_mode)) return std::nullopt;
   if (std::fread(&header, sizeof header, 1, file) != 1) return std::nullopt;
-  if (header.magic != kMagic || !(header.key == key)) return std::nullopt;
+  if (header.magic != kCacheMagic || !(header.key == key)) return std::nullopt;
   if (header.bytes != static_cast<std::uint64_t>(status.st_size) - sizeof header) return std::nullopt;
   std::vector<std::uint8_t> content(header.bytes);
   if (std::fread(content.data(), 1, content.size(), file) != content.size()) return std::nullopt;
@@ -147,7 +147,7 @@ void Cache::store(const std::string& kind, const ContentHash& key, std::span<con
   fs::create_directories(options_.folder, error);
   if (error) return set_trouble(error.message());
   const std::string path = path_of(kind, key), temporary = temporary_for(path);
-  const Header header{kMagic, key, hash_of(content), content.size()};
+  const Header header{kCacheMagic, key, hash_of(content), content.size()};
   std::string why = write_entry(temporary, header, content);
   if (why.empty() && ::rename(temporary.c_str(), path.c_str()) != 0) why = std::strerror(errno);
   if (why.empty()) return drop_least_recently_used();

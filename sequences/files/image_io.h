@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Frames to files and back, by OpenImageIO. Every file is written whole or not at all (atomic_file.h).
+/// Frames to files and back (picture_codec.h). Every file is written whole or not at all (atomic_file.h).
 
 #include <cstdint>
 #include <string>

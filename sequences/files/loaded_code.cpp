@@ -6,6 +6,8 @@
 
 #include <filesystem>
 
+#include "sequences/files/program_folder.h"
+
 namespace talisman::sequences {
 namespace {
 
@@ -20,6 +22,7 @@ ContentHash hash_now() {
   ContentHasher hasher;
   hasher.add(hash_of_file(files.front()).value_or(ContentHash{}));
   for (const std::string& file : files) hasher.add(file).add(stamp_of(file));
+  hasher.add(stamp_of(picture_module()));  // may be loaded later
   return hasher.hash();
 }
 

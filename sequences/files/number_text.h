@@ -4,6 +4,7 @@
 /// Numbers as they stand in tables, CSV and JSON. What is not finite is "-" to a reader, an empty cell in CSV
 /// and null in JSON.
 
+#include <cstdio>
 #include <string>
 
 #include <nlohmann/json_fwd.hpp>
@@ -19,6 +20,13 @@ std::string percent_of(double part, double whole);
 
 /// As printf prints it with `pattern`, which takes one double; empty where it is not finite.
 std::string number_text(const char* pattern, double value);
+
+/// As printf prints it; what is longer than 600 bytes is cut off.
+std::string formatted(const char* pattern, auto... values) {
+  char text[600];
+  std::snprintf(text, sizeof text, pattern, values...);
+  return text;
+}
 
 /// Nine significant digits, for CSV; empty where the value is not finite.
 std::string exact(double value);

@@ -46,6 +46,18 @@ bool has_sequences(const fs::path& folder) {
   return fs::is_regular_file(folder / "sequences" / "fetch-assets", error);
 }
 
+/// The file of that name beside the program, else in `installed` of an installation or in bin/ of a build tree.
+std::string beside_or_in(const char* name, const char* installed) {
+  std::error_code error;
+  const fs::path beside = fs::path(program_folder()) / name;
+  if (fs::is_regular_file(beside, error)) return beside.string();
+  for (const fs::path& folder : places())
+    for (const char* inside : {installed, "bin"})
+      if (const fs::path file = folder / inside / name; fs::is_regular_file(file, error))
+        return file.string();
+  return beside.string();
+}
+
 }  // namespace
 
 std::string program_folder() {
@@ -56,16 +68,9 @@ std::string program_folder() {
   return file.parent_path().string();
 }
 
-std::string importer_program() {
-  std::error_code error;
-  const fs::path beside = fs::path(program_folder()) / "talisman_import";
-  if (fs::is_regular_file(beside, error)) return beside.string();
-  for (const fs::path& folder : places())
-    for (const char* inside : {TALISMAN_LIBEXEC_FOLDER, "bin"})
-      if (const fs::path program = folder / inside / "talisman_import"; fs::is_regular_file(program, error))
-        return program.string();
-  return beside.string();
-}
+std::string importer_program() { return beside_or_in("talisman_import", TALISMAN_LIBEXEC_FOLDER); }
+
+std::string picture_module() { return beside_or_in("talisman_pictures.so", TALISMAN_LIB_FOLDER); }
 
 std::string data_folder() {
   for (const fs::path& folder : places())

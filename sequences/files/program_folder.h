@@ -6,6 +6,7 @@
 ///                build tree                        installation
 ///   the tool     build/…/bin/talisman              PREFIX/bin/talisman
 ///   importer     build/…/bin/talisman_import       PREFIX/libexec/talisman/talisman_import
+///   pictures     build/…/bin/talisman_pictures.so  PREFIX/lib/talisman/talisman_pictures.so
 ///   sequences    sequences/ of the source tree     PREFIX/share/talisman/sequences/
 ///
 /// Both kinds of tree can be moved: everything is looked for in the folders above the file from which this code
@@ -22,6 +23,9 @@ std::string program_folder();
 
 /// The program that reads models (import/model_import.h); where it should be if it is not there.
 std::string importer_program();
+
+/// The module that reads and writes picture files (files/picture_codec.h); where it should be if it is not there.
+std::string picture_module();
 
 /// The folder whose folder sequences/ has the sequences that come with the program: the root of the source tree,
 /// or PREFIX/share/talisman. Empty when there is none, because the program was moved away from them.

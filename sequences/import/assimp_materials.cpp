@@ -7,6 +7,7 @@
 #include <assimp/material.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/limits.h"
 #include "sequences/import/pbr_surface.h"
 #include "sequences/import/picture_kind.h"
 #include "sequences/import/texture_io.h"
@@ -19,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kMaxShininess = 1024;
 constexpr float kDielectric = 0.04f;  // reflectance of common non-metals at normal incidence
 
 layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
@@ -48,11 +48,6 @@ layers::Texture read_reference(Import& import, const std::string& reference) {
   layers::Texture texture = read_texture(file);
   texture.name = fs::path(file).filename().string();
   return texture;
-}
-
-void make_opaque(layers::Texture& texture) {
-  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i] = 255;
-  texture.has_alpha = false;
 }
 
 /// Index of the material's colour texture; -1: none, or missing (a warning, once per reference).

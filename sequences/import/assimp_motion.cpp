@@ -7,6 +7,7 @@
 
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/exposure.h"
+#include "sequences/import/limits.h"
 
 namespace talisman::sequences {
 
@@ -14,7 +15,6 @@ namespace {
 
 constexpr double kDefaultTicksPerSecond = 25;  // assimp's word for "the file does not say"
 constexpr double kDefaultFov_rad = 0.9;
-constexpr double kWidestCone_rad = std::numbers::pi / 2;  ///< a half-space
 
 /// Keys in seconds with strictly increasing times; of equal times the first is kept. Keys that are no numbers
 /// are left out.

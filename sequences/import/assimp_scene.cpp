@@ -12,14 +12,13 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "sequences/import/file_frame.h"
+#include "sequences/import/limits.h"
 #include "sequences/import/recorded_files.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 
 namespace {
-
-constexpr int kMaxDepth = 1000;  // of the node tree; deeper ones are taken for damage
 
 std::string text(const aiString& s) { return std::string(s.C_Str()); }
 
@@ -92,7 +91,8 @@ std::string telling_name(const Import& import, const aiNode& node) {
 
 void import_nodes(Import& import, const aiNode* node, int parent, const std::string& parent_path, int depth) {
   if (!node) return import.warn("a node is missing in the file's tree");
-  if (depth > kMaxDepth) throw InputError("nodes are nested deeper than " + std::to_string(kMaxDepth));
+  if (depth > kMaxNodeDepth)
+    throw InputError("nodes are nested deeper than " + std::to_string(kMaxNodeDepth));
   auto& nodes = import.model.scene.nodes;
   const int index = static_cast<int>(nodes.size());
   const std::string name = telling_name(import, *node);

@@ -5,14 +5,13 @@
 
 #include "sequences/import/exposure.h"
 #include "sequences/import/gltf_scene.h"
+#include "sequences/import/limits.h"
 
 namespace talisman::sequences {
 
 namespace {
 
 using layers::Light;
-
-constexpr double kWidestCone_rad = std::numbers::pi / 2;  ///< a half-space
 
 void read_cone(GltfImport& import, const Json& from, Light& light) {
   const Json& spot = object_of(from, "spot");

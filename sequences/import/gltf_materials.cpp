@@ -104,11 +104,6 @@ GltfCoordinates coordinates_of(const Json& info) {
   return coordinates;
 }
 
-void make_opaque(layers::Texture& texture) {
-  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i] = 255;
-  texture.has_alpha = false;
-}
-
 /// Reads textures, each of them once, with and without its alpha.
 class Textures {
  public:

@@ -8,6 +8,7 @@
 
 #include "layers/layer.h"
 #include "sequences/import/gltf_scene.h"
+#include "sequences/import/limits.h"
 
 namespace talisman::sequences {
 
@@ -17,7 +18,6 @@ using layers::dmat3;
 using layers::dmat4;
 using layers::dvec3;
 
-constexpr int kMaxDepth = 1000;       // of the node tree; deeper ones are taken for damage
 constexpr double kOrthogonal = 1e-6;  // cosine between axes that still counts as a right angle
 /// An orthographic camera is drawn by a long lens: from this many radii of the scene away perspective moves
 /// what is at its front by less than half a pixel of a thousand against what is at its back.
@@ -101,7 +101,8 @@ class Tree {
   explicit Tree(GltfImport& import) : import_(import) {}
 
   void add(int index, int parent, const std::string& above, int depth) {
-    if (depth > kMaxDepth) throw InputError("nodes are nested deeper than " + std::to_string(kMaxDepth));
+    if (depth > kMaxNodeDepth)
+      throw InputError("nodes are nested deeper than " + std::to_string(kMaxNodeDepth));
     const Json& node = item_of(import_.file, "nodes", index);
     if (import_.nodes.contains(index))
       throw InputError("glTF: node " + std::to_string(index) +

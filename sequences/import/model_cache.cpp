@@ -12,14 +12,14 @@
 namespace talisman::sequences {
 namespace {
 
-constexpr const char* kKind = "model";
+constexpr const char* kModelKind = "model";
 
 std::optional<ContentHash> key_of(const std::string& path, const ImportLimits& limits,
                                   const std::string& reader, const std::vector<std::string>& folders) {
   const auto model = hash_of_file(path), code = hash_of_file(reader);
   if (!model || !code) return std::nullopt;
   ContentHasher hasher;
-  hasher.add(kKind).add(path).add(std::filesystem::absolute(path).string());
+  hasher.add(kModelKind).add(path).add(std::filesystem::absolute(path).string());
   hasher.add(*model).add(*code).add(limits.seconds).add(limits.megabytes);
   for (const std::string& folder : folders) hasher.add(std::filesystem::absolute(folder).string());
   return hasher.hash();
@@ -49,7 +49,7 @@ CachedModel::CachedModel(std::string path, const ImportLimits& limits, const std
 
 std::optional<ImportedModel> CachedModel::find() const {
   if (!key_) return std::nullopt;
-  const auto content = program_cache().load(kKind, *key_);
+  const auto content = program_cache().load(kModelKind, *key_);
   std::uint64_t files = 0;
   if (!content || content->size() < sizeof files) return std::nullopt;
   std::memcpy(&files, content->data(), sizeof files);
@@ -81,7 +81,7 @@ void CachedModel::keep(std::span<const std::uint8_t> stream, const ImportedModel
     to += sizeof *now;
   }
   content.insert(content.end(), stream.begin(), stream.end());
-  program_cache().store(kKind, *key_, content);
+  program_cache().store(kModelKind, *key_, content);
 }
 
 }  // namespace talisman::sequences

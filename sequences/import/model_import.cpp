@@ -30,12 +30,12 @@ using Clock = std::chrono::steady_clock;
 constexpr std::size_t kKeptErrors = 64 * 1024;
 
 /// Closes itself.
-class Descriptor {
+class PipeEnd {
  public:
-  explicit Descriptor(int fd = -1) : fd_(fd) {}
-  ~Descriptor() { close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
+  explicit PipeEnd(int fd = -1) : fd_(fd) {}
+  ~PipeEnd() { close(); }
+  PipeEnd(const PipeEnd&) = delete;
+  PipeEnd& operator=(const PipeEnd&) = delete;
   void reset(int fd) {
     close();
     fd_ = fd;
@@ -57,7 +57,7 @@ struct Pipe {
     read.reset(ends[0]);
     write.reset(ends[1]);
   }
-  Descriptor read, write;
+  PipeEnd read, write;
 };
 
 /// The running child; it is killed and collected whatever happens.
@@ -113,7 +113,7 @@ struct Outcome {
 
 /// Reads what is there. False at the end of the stream.
 template <typename Bytes>
-bool read_some(Descriptor& fd, Bytes& into) {
+bool read_some(PipeEnd& fd, Bytes& into) {
   std::array<char, 65536> buffer;
   const ssize_t n = ::read(fd.get(), buffer.data(), buffer.size());
   if (n < 0 && errno == EINTR) return true;

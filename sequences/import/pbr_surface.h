@@ -19,6 +19,7 @@
 
 #include <glm/common.hpp>
 #include "layers/scene.h"
+#include "sequences/import/limits.h"
 
 namespace talisman::sequences {
 
@@ -34,7 +35,7 @@ inline double pbr_color_share(double metallic) { return 1 - metallic + 0.45 * me
 inline PbrSurface pbr_surface(const layers::vec3& base, const layers::vec3& dielectric, double metallic,
                               double roughness) {
   const double m = std::clamp(metallic, 0.0, 1.0), r = std::clamp(roughness, 0.05, 1.0);
-  const double exponent = std::clamp(2 / std::pow(r, 4.0) - 2, 1.0, 1024.0);
+  const double exponent = std::clamp(2 / std::pow(r, 4.0) - 2, 1.0, double{kMaxShininess});
   const double strength = std::min(2.5, (exponent + 2) / 8) * (1 - r * r);
   return {base * static_cast<float>(pbr_color_share(m)),
           glm::mix(dielectric, base, static_cast<float>(m)) * static_cast<float>(strength),

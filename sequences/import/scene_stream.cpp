@@ -10,7 +10,7 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr std::uint32_t kMagic =
+constexpr std::uint32_t kSceneMagic =
     0x4d534c54;  // "TLSM"; both ends run on one machine, so bytes are in its order
 constexpr std::uint32_t kVersion = 4;
 
@@ -339,7 +339,7 @@ void fields(Stream& s, T& model) {
 template <typename T>
 std::vector<std::uint8_t> to_bytes(const T& content) {
   Writer writer;
-  writer.value(kMagic);
+  writer.value(kSceneMagic);
   writer.value(kVersion);
   fields(writer, content);
   return writer.take();
@@ -350,7 +350,7 @@ T from_bytes(std::span<const std::uint8_t> bytes) {
   Reader reader(bytes);
   std::uint32_t magic = 0, version = 0;
   reader.value(magic);
-  if (magic != kMagic) fail("does not begin with its magic number");
+  if (magic != kSceneMagic) fail("does not begin with its magic number");
   reader.value(version);
   if (version != kVersion) fail("version " + std::to_string(version) + ", rule: " + std::to_string(kVersion));
   T content;

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/import/texture_io.h"
 
-#include <cstdint>
-#include <memory>
+#include <vector>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include "sequences/files/picture_codec.h"
 
 namespace talisman::sequences {
 
 namespace {
 
 constexpr int kMaxSide = 16384;  // a larger side is taken for a damaged header rather than a texture
-
-OIIO::ImageSpec straight_alpha() {
-  OIIO::ImageSpec config;
-  config["oiio:UnassociatedAlpha"] = 1;
-  return config;
-}
 
 /// Grey, grey + alpha, RGB and RGBA become RGBA; further channels are left out.
 void spread_channels(const std::vector<std::uint8_t>& pixels, int channels, layers::Texture& texture) {
@@ -39,45 +31,40 @@ void spread_channels(const std::vector<std::uint8_t>& pixels, int channels, laye
   texture.has_alpha = false;
 }
 
-layers::Texture read_open_image(std::unique_ptr<OIIO::ImageInput> input, const std::string& name) {
-  if (!input) {
-    std::string why = OIIO::geterror();
-    throw InputError("not an image that can be read: " + (why.empty() ? "unknown format" : why), name);
-  }
-  const OIIO::ImageSpec& spec = input->spec();
-  if (spec.width < 1 || spec.height < 1 || spec.width > kMaxSide || spec.height > kMaxSide ||
-      spec.nchannels < 1)
-    throw InputError("image of " + std::to_string(spec.width) + " × " + std::to_string(spec.height) + " × " +
-                         std::to_string(spec.nchannels) + ", rule: sides from 1 to " +
+layers::Texture read_opened(OpenedPicture opened, const std::string& name) {
+  if (!opened.reader) throw InputError("not an image that can be read: " + opened.error, name);
+  const PictureInfo& info = opened.reader->info();
+  if (info.width < 1 || info.height < 1 || info.width > kMaxSide || info.height > kMaxSide ||
+      info.channels < 1)
+    throw InputError("image of " + std::to_string(info.width) + " × " + std::to_string(info.height) + " × " +
+                         std::to_string(info.channels) + ", rule: sides from 1 to " +
                          std::to_string(kMaxSide),
                      name);
   layers::Texture texture;
   texture.name = name;
-  texture.width = spec.width;
-  texture.height = spec.height;
-  const int channels = spec.nchannels;
-  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(spec.width) * spec.height * channels);
-  if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, pixels.data()))
-    throw InputError("damaged image: " + input->geterror(), name);
-  spread_channels(pixels, channels, texture);
+  texture.width = info.width;
+  texture.height = info.height;
+  std::vector<std::uint8_t> pixels(static_cast<std::size_t>(info.width) * info.height * info.channels);
+  const std::string error = opened.reader->read(pixels.data());
+  if (!error.empty()) throw InputError("damaged image: " + error, name);
+  spread_channels(pixels, info.channels, texture);
   return texture;
 }
 
 }  // namespace
 
 layers::Texture read_texture(const std::string& path) {
-  const OIIO::ImageSpec config = straight_alpha();
-  return read_open_image(OIIO::ImageInput::open(path, &config), path);
+  return read_opened(picture_codec().open(path, AlphaKind::Straight), path);
 }
 
 layers::Texture read_texture_from_bytes(std::span<const std::uint8_t> bytes, const std::string& name,
                                         const std::string& format) {
-  OIIO::Filesystem::IOMemReader memory(const_cast<std::uint8_t*>(bytes.data()), bytes.size());
-  OIIO::ImageSpec config = straight_alpha();
-  // Given as an argument beside a configuration, 2.4 forgets the proxy; in the configuration it is kept.
-  OIIO::Filesystem::IOProxy* proxy = &memory;
-  config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  return read_open_image(OIIO::ImageInput::open("embedded." + format, &config), name);
+  return read_opened(picture_codec().open_bytes(bytes, format, AlphaKind::Straight), name);
+}
+
+void make_opaque(layers::Texture& texture) {
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4) texture.rgba[i] = 255;
+  texture.has_alpha = false;
 }
 
 }  // namespace talisman::sequences

@@ -20,4 +20,7 @@ layers::Texture read_texture(const std::string& path);
 layers::Texture read_texture_from_bytes(std::span<const std::uint8_t> bytes, const std::string& name,
                                         const std::string& format);
 
+/// Alpha is left out, as where a material says that it has no meaning.
+void make_opaque(layers::Texture& texture);
+
 }  // namespace talisman::sequences

@@ -13,7 +13,7 @@ namespace talisman::sequences {
 namespace {
 
 constexpr const char* kBegin = "<!-- columns: ";
-constexpr const char* kEnd = "<!-- end of columns -->";
+constexpr const char* kEndOfTables = "<!-- end of columns -->";
 
 /// "fiducials/worst_at_px/0" as users of JSON write it: `fiducials.worst_at_px[0]`.
 std::string place_in_json(const std::string& path) {
@@ -66,7 +66,7 @@ std::string with_column_tables(const std::string& markdown) {
       if (!std::getline(lines, line))
         throw InputError("line " + std::to_string(begin) + ": table '" + name + "' has no end");
       ++number;
-    } while (line != kEnd);
+    } while (line != kEndOfTables);
     text += "\n" + table->second + "\n" + line + "\n";
   }
   return text;

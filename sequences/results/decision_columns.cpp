@@ -6,7 +6,7 @@ namespace talisman::sequences {
 namespace {
 
 using Row = DecisionRow;
-using Columns = std::vector<Column<Row>>;
+using DecisionColumns = std::vector<Column<Row>>;
 
 const regulator::LayerAssessment& assessment(const Row& row) {
   return row.report.assessments[row.decision.layer];
@@ -54,7 +54,7 @@ Value if_computed(const Part& part, T value) {
   return part.computed ? value_of(value) : Value(Null{});
 }
 
-Columns what_was_done() {
+DecisionColumns what_was_done() {
   return {computed<Row>("frame", "frame", "", "number of the frame, from 0",
                         [](const Row& r) { return r.report.frame; }),
           computed<Row>("layer", "layer", "", "name of the layer, or of the aggregate that draws several",
@@ -66,7 +66,7 @@ Columns what_was_done() {
                         [](const Row& r) { return r.decision.reason; })};
 }
 
-Columns warp_columns() {
+DecisionColumns warp_columns() {
   const char* place = "the map of sprite positions when drawn to display positions now, row by row";
   return {
       computed<Row>("warp_xx", "warp/0", "", place, [](const Row& r) { return entry_of_warp<0, 0>(r); }),
@@ -84,7 +84,7 @@ Columns warp_columns() {
       computed<Row>("warp_w", "warp/8", "", "likewise", [](const Row& r) { return entry_of_warp<2, 2>(r); })};
 }
 
-Columns what_is_shown() {
+DecisionColumns what_is_shown() {
   return {
       computed<Row>("geometric_px", "geometric_px", "px",
                     "error of what is displayed: largest distance of a characteristic point from where it "
@@ -107,7 +107,7 @@ Columns what_is_shown() {
                     })};
 }
 
-Columns geometric_columns() {
+DecisionColumns geometric_columns() {
   return {computed<Row>("warp_geometric_px", "fiducials/warp_geometric_px", "px",
                         "error that the old sprite would have with the warp, also when that was rejected",
                         [](const Row& r) { return fiducials_of(r).geometric.px; }),
@@ -138,7 +138,7 @@ Columns geometric_columns() {
                         [](const Row& r) { return std::string_view(fiducials_of(r).visibility.why_not); })};
 }
 
-Columns photometric_columns() {
+DecisionColumns photometric_columns() {
   using P = fiducials::Photometric;
   return {
       computed<Row>("photometric_why_not", "fiducials/photometric/why_not", "",
@@ -174,7 +174,7 @@ Columns photometric_columns() {
                     [](const Row& r) { return photometric(r, &P::light_distance); })};
 }
 
-Columns remaining_fiducials() {
+DecisionColumns remaining_fiducials() {
   return {
       computed<Row>(
           "turned_px", "fiducials/turned_px", "px",
@@ -202,7 +202,7 @@ Columns remaining_fiducials() {
                     [](const Row& r) { return assessment(r).frames_since_render; })};
 }
 
-Columns cost_columns() {
+DecisionColumns cost_columns() {
   return {
       computed<Row>("cost_polygons", "cost/polygons", "triangles", "sent to the renderer; 0 unless rendered",
                     [](const Row& r) { return r.decision.cost.polygons; }),
@@ -220,8 +220,8 @@ Columns cost_columns() {
 const ColumnTable<DecisionRow>& decision_table() {
   static const ColumnTable<DecisionRow> table = [] {
     ColumnTable<DecisionRow> t{"decisions", "talisman.decision/1", {}, {}};
-    for (const Columns& part : {what_was_done(), warp_columns(), what_is_shown(), geometric_columns(),
-                                photometric_columns(), remaining_fiducials(), cost_columns()})
+    for (const DecisionColumns& part : {what_was_done(), warp_columns(), what_is_shown(), geometric_columns(),
+                                        photometric_columns(), remaining_fiducials(), cost_columns()})
       t.columns.insert(t.columns.end(), part.begin(), part.end());
     t.groups = {{"fiducials", "of layers in view that have an old sprite", true,
                  [](const DecisionRow& r) { return assessment(r).has_sprite && assessment(r).in_view; }}};

@@ -6,7 +6,7 @@ namespace talisman::sequences {
 
 namespace {
 
-using Columns = std::vector<Column<FrameLine>>;
+using FrameColumns = std::vector<Column<FrameLine>>;
 
 /// A member that is known only of frames that were drawn; else null.
 template <typename Member>
@@ -26,7 +26,7 @@ Column<FrameLine> counted(std::string name, std::string unit, std::string meanin
   return stored<FrameLine>(std::move(name), path, std::move(unit), std::move(meaning), member);
 }
 
-Columns counters() {
+FrameColumns counters() {
   return {counted(
               "frame", "", "number of the frame, from 0", [](auto& l) -> auto& { return l.frame; }),
           measured(
@@ -45,7 +45,7 @@ Columns counters() {
               [](auto& l) -> auto& { return l.layers_assessed; })};
 }
 
-Columns work() {
+FrameColumns frame_work() {
   return {counted(
               "shadow_maps_drawn", "maps", "as planned",
               [](auto& l) -> auto& { return l.passes.shadow_maps_drawn; }),
@@ -69,7 +69,7 @@ Columns work() {
               [](auto& l) -> auto& { return l.pixels.reference; })};
 }
 
-Columns drawing() {
+FrameColumns drawing() {
   return {measured(
               "pixels_filled", "texels", "writes by the renderer",
               [](auto& l) -> auto& { return l.pixels.filled; }),
@@ -102,7 +102,7 @@ Column<FrameLine> sorting(const char* name, const char* unit, const char* meanin
                            meaning, member);
 }
 
-Columns visibility() {
+FrameColumns frame_visibility() {
   return {sorting(
               "layers", "layers", "that were sorted",
               [](auto& l) -> auto& { return l.visibility->counters.layers; }),
@@ -147,7 +147,7 @@ Columns visibility() {
               [](auto& l) -> auto& { return l.visibility->merged_parts; })};
 }
 
-Columns budget_gap() {
+FrameColumns frame_budget_gap() {
   return {stored<FrameLine>(
               "budget_gap_greedy_px", "budget_gap/greedy_px", "px", "benefit of the layers chosen",
               [](auto& l) -> auto& { return l.budget_gap->greedy_px; }),
@@ -163,7 +163,7 @@ Columns budget_gap() {
 
 /// One comparison of pictures. `Which` returns a Quality by reference.
 template <typename Which>
-Columns quality(const std::string& which, const std::string& what, Which) {
+FrameColumns quality(const std::string& which, const std::string& what, Which) {
   const auto column = [&](const char* name, const char* unit, const std::string& meaning, auto member) {
     return stored<FrameLine>("quality_" + which + "_" + name, "quality/" + which + "/" + name, unit, meaning,
                              member);
@@ -190,7 +190,7 @@ void make_quality(FrameLine& line) {
     q->psnr_db = INFINITY;  // null when read
 }
 
-std::vector<ColumnGroup<FrameLine>> groups() {
+std::vector<ColumnGroup<FrameLine>> frame_groups() {
   return {
       {"compression", "with --compression", false,
        [](const FrameLine& l) { return l.compression.has_value(); },
@@ -208,11 +208,11 @@ std::vector<ColumnGroup<FrameLine>> groups() {
 
 const ColumnTable<FrameLine>& frame_table() {
   static const ColumnTable<FrameLine> table = [] {
-    ColumnTable<FrameLine> t{"frames", "talisman.frame/1", {}, groups()};
-    for (const Columns& part :
-         {counters(), work(), drawing(),
-          compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), visibility(),
-          budget_gap(),
+    ColumnTable<FrameLine> t{"frames", "talisman.frame/1", {}, frame_groups()};
+    for (const FrameColumns& part :
+         {counters(), frame_work(), drawing(),
+          compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
+          frame_budget_gap(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

@@ -9,7 +9,7 @@ namespace talisman::sequences {
 
 namespace {
 
-using Columns = std::vector<Column<RunRow>>;
+using RunColumns = std::vector<Column<RunRow>>;
 
 std::optional<MeanQuality> mean_quality(const Summary& summary, Quality FrameQuality::*which) {
   MeanQuality mean;
@@ -65,7 +65,7 @@ Column<RunRow> place(const char* path) {
   return computed<RunRow>("", path, "", "", [](const RunRow&) { return Value(Null{}); });
 }
 
-Columns what_was_run() {
+RunColumns what_was_run() {
   return {
       of_run("sequence", "", "name of the sequence", [](const RunRow& r) { return r.summary.sequence; }),
       of_run("policy", "", "of the regulator", [](const RunRow& r) { return r.summary.policy; }),
@@ -86,7 +86,7 @@ std::int64_t total_of(const RunRow& row, std::int64_t (*number)(const FrameLine&
   return row.summary.total(number);
 }
 
-Columns work() {
+RunColumns run_work() {
   return {
       of_run("mean_update_rate", "",
              "mean over the author's layers of the share of frames in which they are drawn",
@@ -126,7 +126,7 @@ Column<RunRow> sorting(const char* name, const char* unit, const char* meaning, 
                           get);
 }
 
-Columns visibility() {
+RunColumns run_visibility() {
   return {sorting("frames_sorted", "frames", "in which layers were sorted",
                   [](const RunRow& r) { return r.visibility.frames; }),
           sorting("frames_with_cycles", "frames", "in which layers occluded each other in a cycle",
@@ -152,7 +152,7 @@ Columns visibility() {
                   [](const RunRow& r) { return r.resolved.reads; })};
 }
 
-Columns modelled() {
+RunColumns modelled() {
   return {measured("modelled_ms", "ms", "modelled time of a frame, mean over the frames",
                    [](const RunRow& r) {
                      const double frames = static_cast<double>(r.summary.frames.size());
@@ -162,14 +162,14 @@ Columns modelled() {
                  [](const RunRow&) { return regulator::talisman_1996().name; })};
 }
 
-Columns compression() {
-  Columns columns = compression_columns<RunRow>([](auto& r) -> auto& { return *r.compression; });
+RunColumns compression() {
+  RunColumns columns = compression_columns<RunRow>([](auto& r) -> auto& { return *r.compression; });
   columns.push_back(computed<RunRow>("compression_quality", "compression/quality", "", "1 to 100",
                                      [](const RunRow& r) { return r.summary.compression_quality; }));
   return columns;
 }
 
-Columns budget_gap() {
+RunColumns run_budget_gap() {
   return {computed<RunRow>("budget_gap_mean", "budget_gap/mean", "",
                            "share of the best choice's benefit that greedy missed, mean over exact_frames",
                            [](const RunRow& r) { return r.gap.mean; }),
@@ -183,7 +183,7 @@ Columns budget_gap() {
 }
 
 template <typename Which>
-Columns quality(const std::string& group, const std::string& what, Which) {
+RunColumns run_quality(const std::string& group, const std::string& what, Which) {
   const auto column = [&](const char* name, const char* unit, const std::string& meaning, auto get) {
     return computed<RunRow>(group + "_" + name, group + "/" + name, unit, meaning, get);
   };
@@ -195,7 +195,7 @@ Columns quality(const std::string& group, const std::string& what, Which) {
                  [](const RunRow& r) { return Which{}(r)->flip; })};
 }
 
-std::vector<ColumnGroup<RunRow>> groups() {
+std::vector<ColumnGroup<RunRow>> run_groups() {
   return {
       {"visibility", "where layers were sorted in any frame; null: the groups alone gave the order", true,
        [](const RunRow& r) { return r.visibility.frames > 0; }},
@@ -225,15 +225,15 @@ RunRow::RunRow(const Summary& s)
 
 const ColumnTable<RunRow>& run_table() {
   static const ColumnTable<RunRow> table = [] {
-    ColumnTable<RunRow> t{"run", "talisman.summary/1", {}, groups()};
-    for (const Columns& part :
-         {what_was_run(), work(), visibility(), modelled(), compression(), budget_gap(),
-          quality(
+    ColumnTable<RunRow> t{"run", "talisman.summary/1", {}, run_groups()};
+    for (const RunColumns& part :
+         {what_was_run(), run_work(), run_visibility(), modelled(), compression(), run_budget_gap(),
+          run_quality(
               "quality", "displayed against `direct`", [](auto& r) -> auto& { return r.quality; }),
-          quality(
+          run_quality(
               "quality_of_reuse", "displayed against `reference`",
               [](auto& r) -> auto& { return r.quality_of_reuse; }),
-          quality(
+          run_quality(
               "quality_of_resampling", "`reference` against `direct`",
               [](auto& r) -> auto& { return r.quality_of_resampling; })})
       t.columns.insert(t.columns.end(), part.begin(), part.end());

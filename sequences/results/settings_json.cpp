@@ -13,18 +13,18 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json value_of(bool value) { return value; }
-Json value_of(int value) { return value; }
-Json value_of(std::int64_t value) { return value == regulator::kNoLimit ? Json(nullptr) : Json(value); }
-Json value_of(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-Json value_of(float value) { return value_of(static_cast<double>(value)); }
-Json value_of(const layers::ivec2& v) { return {v.x, v.y}; }
-Json value_of(const layers::dvec2& v) { return {v.x, v.y}; }
-Json value_of(regulator::Policy policy) { return regulator::name(policy); }
-Json value_of(regulator::Prediction prediction) { return regulator::name(prediction); }
-Json value_of(warp::Curve curve) { return warp::name(curve); }
+Json setting_value(bool value) { return value; }
+Json setting_value(int value) { return value; }
+Json setting_value(std::int64_t value) { return value == regulator::kNoLimit ? Json(nullptr) : Json(value); }
+Json setting_value(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+Json setting_value(float value) { return setting_value(static_cast<double>(value)); }
+Json setting_value(const layers::ivec2& v) { return {v.x, v.y}; }
+Json setting_value(const layers::dvec2& v) { return {v.x, v.y}; }
+Json setting_value(regulator::Policy policy) { return regulator::name(policy); }
+Json setting_value(regulator::Prediction prediction) { return regulator::name(prediction); }
+Json setting_value(warp::Curve curve) { return warp::name(curve); }
 
-Json value_of(layers::BoundKind bound) {
+Json setting_value(layers::BoundKind bound) {
   switch (bound) {
     case layers::BoundKind::Box8:
       return "box8";
@@ -36,7 +36,7 @@ Json value_of(layers::BoundKind bound) {
   return nullptr;
 }
 
-Json value_of(chunker::Shading shading) {
+Json setting_value(chunker::Shading shading) {
   switch (shading) {
     case chunker::Shading::Flat:
       return "flat";
@@ -48,7 +48,7 @@ Json value_of(chunker::Shading shading) {
   return nullptr;
 }
 
-Json value_of(chunker::TextureFilter filter) {
+Json setting_value(chunker::TextureFilter filter) {
   switch (filter) {
     case chunker::TextureFilter::Nearest:
       return "nearest";
@@ -60,16 +60,18 @@ Json value_of(chunker::TextureFilter filter) {
   return nullptr;
 }
 
-Json value_of(Cycles cycles) { return cycles == Cycles::Merge ? "merge" : "keep"; }
-Json value_of(Compositor compositor) { return compositor == Compositor::Talisman ? "talisman" : "extended"; }
+Json setting_value(Cycles cycles) { return cycles == Cycles::Merge ? "merge" : "keep"; }
+Json setting_value(Compositor compositor) {
+  return compositor == Compositor::Talisman ? "talisman" : "extended";
+}
 
-Json value_of(const std::optional<chunker::CompressionOptions>& compression) {
+Json setting_value(const std::optional<chunker::CompressionOptions>& compression) {
   if (!compression) return nullptr;
   const auto& [quality] = *compression;
   return quality;
 }
 
-Json value_of(const std::vector<layers::ExplicitPair>& pairs) {
+Json setting_value(const std::vector<layers::ExplicitPair>& pairs) {
   Json json = Json::array();
   for (const auto& [behind, front] : pairs) json.push_back({behind, front});
   return json;
@@ -79,7 +81,8 @@ Json value_of(const std::vector<layers::ExplicitPair>& pairs) {
 
 Json json_of(const Settings& settings) {
   Json json = Json::object();
-  for_each_setting(settings, [&json](const char* name, const auto& value) { json[name] = value_of(value); });
+  for_each_setting(settings,
+                   [&json](const char* name, const auto& value) { json[name] = setting_value(value); });
   return json;
 }
 

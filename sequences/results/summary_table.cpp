@@ -3,40 +3,31 @@
 #include <cmath>
 #include <cstdio>
 
+#include "sequences/files/number_text.h"
 #include "sequences/results/column_tables.h"
 
 namespace talisman::sequences {
 
 namespace {
 
-std::string format(const char* pattern, auto... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
-}
-
-std::string percent(double part, double whole) {
-  return whole > 0 ? format("%.1f %%", 100 * part / whole) : "-";
-}
-
 /// "123 k", "4.56 M"
 std::string magnitude(double value) {
-  if (value >= 1e9) return format("%.2f G", value / 1e9);
-  if (value >= 1e6) return format("%.2f M", value / 1e6);
-  if (value >= 1e4) return format("%.1f k", value / 1e3);
-  return format("%.0f", value);
+  if (value >= 1e9) return formatted("%.2f G", value / 1e9);
+  if (value >= 1e6) return formatted("%.2f M", value / 1e6);
+  if (value >= 1e4) return formatted("%.1f k", value / 1e3);
+  return formatted("%.0f", value);
 }
 
 std::string layer_rows(const Summary& s) {
   const int frames = static_cast<int>(s.frames.size());
-  std::string text = format("  %-24s %9s %8s %8s %9s %9s %11s\n", "layer", "polygons", "renders", "rate",
-                            "mean px", "max px", "sprite px");
+  std::string text = formatted("  %-24s %9s %8s %8s %9s %9s %11s\n", "layer", "polygons", "renders", "rate",
+                               "mean px", "max px", "sprite px");
   for (const LayerSummary& layer : s.layers) {
     const std::string name = layer.name.size() <= 24 ? layer.name : layer.name.substr(0, 21) + "...";
-    const std::string sprite = format("%dx%d", layer.sprite_px.x, layer.sprite_px.y);
-    text += format("  %-24s %9d %8d %7.1f%% %9.3f %9.3f %11s\n", name.c_str(), layer.polygons, layer.renders,
-                   100 * layer.update_rate(frames), layer.mean_geometric_px(), layer.max_geometric_px,
-                   sprite.c_str());
+    const std::string sprite = formatted("%dx%d", layer.sprite_px.x, layer.sprite_px.y);
+    text += formatted("  %-24s %9d %8d %7.1f%% %9.3f %9.3f %11s\n", name.c_str(), layer.polygons,
+                      layer.renders, 100 * layer.update_rate(frames), layer.mean_geometric_px(),
+                      layer.max_geometric_px, sprite.c_str());
   }
   return text;
 }
@@ -44,8 +35,8 @@ std::string layer_rows(const Summary& s) {
 std::string quality_rows(const RunRow& run) {
   std::string text;
   const auto row = [&](const char* label, const MeanQuality& q) {
-    const std::string psnr = std::isfinite(q.psnr_db()) ? format("%6.2f dB", q.psnr_db()) : "identical";
-    text += format("  %-30s PSNR %9s  SSIM %.4f  FLIP %.4f\n", label, psnr.c_str(), q.ssim, q.flip);
+    const std::string psnr = std::isfinite(q.psnr_db()) ? formatted("%6.2f dB", q.psnr_db()) : "identical";
+    text += formatted("  %-30s PSNR %9s  SSIM %.4f  FLIP %.4f\n", label, psnr.c_str(), q.ssim, q.flip);
   };
   row("shown against direct", *run.quality);
   row("  of it by reuse", *run.quality_of_reuse);
@@ -55,19 +46,19 @@ std::string quality_rows(const RunRow& run) {
 
 std::string share_row(const char* label, std::int64_t part, std::int64_t whole, const char* of) {
   const double a = static_cast<double>(part), b = static_cast<double>(whole);
-  return format("  %-17s %s of %s%s (%s of reference)\n", label, magnitude(a).c_str(), magnitude(b).c_str(),
-                of, percent(a, b).c_str());
+  return formatted("  %-17s %s of %s%s (%s %% of reference)\n", label, magnitude(a).c_str(),
+                   magnitude(b).c_str(), of, percent_of(a, b).c_str());
 }
 
 std::string work_rows(const Summary& s) {
-  std::string text = format("  update rate       %.1f %% mean over layers, %.1f %% weighted by polygons\n",
-                            100 * s.mean_update_rate(), 100 * s.cost_weighted_update_rate());
+  std::string text = formatted("  update rate       %.1f %% mean over layers, %.1f %% weighted by polygons\n",
+                               100 * s.mean_update_rate(), 100 * s.cost_weighted_update_rate());
   text += share_row("polygons", s.polygons_rendered(),
                     s.total([](const FrameLine& line) { return line.polygons.reference; }), " in view");
   text += share_row("sprite pixels", s.pixels_rendered(),
                     s.total([](const FrameLine& line) { return line.pixels.reference; }), "");
   if (!s.planned_only)
-    text += format(
+    text += formatted(
         "  modelled          %.2f ms a frame on talisman-1996\n",
         s.frames.empty() ? 0 : s.total(&FrameLine::modelled_ms) / static_cast<double>(s.frames.size()));
   return text;
@@ -77,20 +68,20 @@ std::string work_rows(const Summary& s) {
 std::string special_rows(const RunRow& run) {
   std::string text;
   if (const GapSummary& gap = run.gap; gap.frames > 0)
-    text += format(
+    text += formatted(
         "  greedy choice     misses %.2f %% of the best choice's benefit in the mean, %.1f %% at most\n"
         "                    (the best proved in %d of %d frames)\n",
         100 * gap.mean, 100 * gap.max, gap.exact_frames, gap.frames);
   if (const ResolvedCounters& r = run.resolved; r.components > 0)
-    text +=
-        format("  expressions       %d, for %d sprites that would have been merged; %d reads, %d registers\n",
-               r.components, r.layers, r.reads, r.registers);
+    text += formatted(
+        "  expressions       %d, for %d sprites that would have been merged; %d reads, %d registers\n",
+        r.components, r.layers, r.reads, r.registers);
   return text;
 }
 
 std::string compression_row(const RunRow& run) {
   const CompressionReport& c = *run.compression;
-  return format(
+  return formatted(
       "  compression       %.1f : 1 at quality %d, PSNR %.1f dB; cache %.1f %% hits, %s bytes read\n",
       c.ratio(), *run.summary.compression_quality, c.error.color_psnr_db(), 100 * c.cache.hit_rate(),
       magnitude(static_cast<double>(c.cache.bytes_read)).c_str());
@@ -100,21 +91,21 @@ std::string time_row(const Summary& s) {
   const auto seconds = [&s](double FrameTimes::*time) {
     return s.total([time](const FrameLine& line) { return line.times.*time; }) / 1e3;
   };
-  if (s.planned_only) return format("  wall time         plan %.3f s\n", seconds(&FrameTimes::plan_ms));
-  return format("  wall time         plan %.3f s, render %.2f s, composite %.2f s, files %.2f s\n",
-                seconds(&FrameTimes::plan_ms), seconds(&FrameTimes::render_ms),
-                seconds(&FrameTimes::composite_ms), seconds(&FrameTimes::io_ms));
+  if (s.planned_only) return formatted("  wall time         plan %.3f s\n", seconds(&FrameTimes::plan_ms));
+  return formatted("  wall time         plan %.3f s, render %.2f s, composite %.2f s, files %.2f s\n",
+                   seconds(&FrameTimes::plan_ms), seconds(&FrameTimes::render_ms),
+                   seconds(&FrameTimes::composite_ms), seconds(&FrameTimes::io_ms));
 }
 
 }  // namespace
 
 std::string table_of(const Summary& s) {
   const RunRow run(s);
-  std::string text = format("%s: %zu %s of %dx%d px, policy %s, warp %s\n\n", s.sequence.c_str(),
-                            s.frames.size(), s.frames.size() == 1 ? "frame" : "frames", s.display_px.x,
-                            s.display_px.y, s.policy.c_str(), s.warp.c_str());
+  std::string text = formatted("%s: %zu %s of %dx%d px, policy %s, warp %s\n\n", s.sequence.c_str(),
+                               s.frames.size(), s.frames.size() == 1 ? "frame" : "frames", s.display_px.x,
+                               s.display_px.y, s.policy.c_str(), s.warp.c_str());
   text += layer_rows(s) + "\n" + work_rows(s) + special_rows(run);
-  text += format("  planning          %.2f us per layer and frame\n", s.planning_us_per_layer_and_frame());
+  text += formatted("  planning          %.2f us per layer and frame\n", s.planning_us_per_layer_and_frame());
   if (run.compression) text += compression_row(run);
   text += time_row(s);
   if (run.quality) text += "\n" + quality_rows(run);

@@ -57,7 +57,7 @@ std::vector<Column<FrameLine>> columns() {
               [](auto& l) -> auto& { return l.times.io_ms; })};
 }
 
-const RowJson<FrameLine>& frame_json() {
+const RowJson<FrameLine>& timing_row_json() {
   static const RowJson<FrameLine> json(timing_table());
   return json;
 }
@@ -86,13 +86,13 @@ const ColumnTable<FrameLine>& timing_table() {
   return table;
 }
 
-std::string timing_json(const FrameLine& line) { return frame_json().write(line).dump(); }
+std::string timing_json(const FrameLine& line) { return timing_row_json().write(line).dump(); }
 
 std::optional<FrameTiming> timing_from_json(const std::string& text) try {
   const Json json = Json::parse(text);
   if (!json.is_object() || json.at("schema") != timing_table().schema) return std::nullopt;
   FrameLine line;
-  frame_json().read(json, line);
+  timing_row_json().read(json, line);
   return FrameTiming{line.frame, line.times};
 } catch (const Json::exception&) {
   return std::nullopt;

@@ -9,7 +9,7 @@
 namespace talisman::chunker {
 namespace {
 
-constexpr LatticeBox kWholeChunk{0, 0, 31, 31};
+constexpr LatticeBox kEveryPixel{0, 0, 31, 31};
 constexpr int kTexel = 77;
 constexpr std::uint16_t kFull = Samples<16>::kFull;
 
@@ -26,7 +26,7 @@ const Float4 kRed{1, 0, 0, 1}, kGreen{0, 1, 0, 1}, kBlue{0, 0, 1, 1}, kGlass{0.2
 
 std::unique_ptr<FragmentBuffer<16>> buffer(MergeTolerance merge = {}, int limit = 4096) {
   auto b = std::make_unique<FragmentBuffer<16>>();
-  b->clear(kWholeChunk, limit, merge);
+  b->clear(kEveryPixel, limit, merge);
   return b;
 }
 
@@ -199,7 +199,7 @@ void compare_with_sorted_lists() {
   std::uniform_real_distribution<float> unit(0, 1);
   for (int n = 0; n < 3000; ++n) {
     const auto b = std::make_unique<FragmentBuffer<kCount>>();
-    b->clear(kWholeChunk, 4096, {});
+    b->clear(kEveryPixel, 4096, {});
     std::array<std::vector<Fragment>, kCount> lists;
     const int count = 1 + static_cast<int>(random() % 12);
     for (int i = 0; i < count; ++i) {

@@ -9,7 +9,7 @@
 namespace talisman::chunker::tests {
 namespace {
 
-const double kNaN = std::nan("");
+const double kNaNPlane = std::nan("");
 
 LinearImage draw_kept(const layers::Scene& scene, ivec2 size, const std::optional<HalfSpace>& kept,
                       const RenderOptions& options = exact_options()) {
@@ -155,7 +155,7 @@ TEST(KeptHalfSpace, PlanesThatCutNothingChangeNothing) {
   ShadeScene shaded;
   const RenderResult whole = shaded.render(shaded.inputs());
   for (const HalfSpace& none :
-       {HalfSpace{{0, 0, 0}, 1}, HalfSpace{{kNaN, 0, 1}, 0}, HalfSpace{{0, 1, 0}, kNaN},
+       {HalfSpace{{0, 0, 0}, 1}, HalfSpace{{kNaNPlane, 0, 1}, 0}, HalfSpace{{0, 1, 0}, kNaNPlane},
         HalfSpace{{HUGE_VAL, 1, 0}, 0}, HalfSpace{{0, 1, 0}, -1e6}}) {
     ShadeInputs inputs = shaded.inputs();
     inputs.kept = none;
@@ -283,9 +283,9 @@ TEST(BeforeMirror, IsTheEyesSideWhicheverThatIs) {
 
 TEST(BeforeMirror, DegeneratePlanesCutNothing) {
   const layers::SceneFrame frame = ShadeScene().scene.at(0);
-  for (const dvec3& normal : {dvec3(0), dvec3(kNaN, 0, 0), dvec3(HUGE_VAL, 1, 0)})
+  for (const dvec3& normal : {dvec3(0), dvec3(kNaNPlane, 0, 0), dvec3(HUGE_VAL, 1, 0)})
     EXPECT_FALSE(before_mirror(frame, dvec3(0), normal));
-  EXPECT_FALSE(before_mirror(frame, dvec3(kNaN), {0, 1, 0}));
+  EXPECT_FALSE(before_mirror(frame, dvec3(kNaNPlane), {0, 1, 0}));
 }
 
 // --- Several mirrors in one pass

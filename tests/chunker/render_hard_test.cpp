@@ -11,16 +11,16 @@ namespace {
 
 namespace content = talisman::tests;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
 // --- Placements
 
 TEST(RenderPlacement, SingularOrNotFiniteShowsNothing) {
   using layers::Affine2;
   for (const Affine2& map :
-       {Affine2{0, 0, 0, 0, 0, 0}, Affine2{1, 2, 0, 2, 4, 0}, Affine2{kNaN, 0, 0, 0, 1, 0},
-        Affine2{1, 0, kInf, 0, 1, 0}, Affine2{1e-200, 0, 0, 0, 1e-200, 0}}) {
+       {Affine2{0, 0, 0, 0, 0, 0}, Affine2{1, 2, 0, 2, 4, 0}, Affine2{kNotANumber, 0, 0, 0, 1, 0},
+        Affine2{1, 0, kInfinite, 0, 1, 0}, Affine2{1e-200, 0, 0, 0, 1e-200, 0}}) {
     layers::SpritePlacement placement = display_placement({40, 40});
     placement.screen_from_sprite = map;
     const RenderResult result = render_all(content::cube_scene(), placement, {40, 40});
@@ -62,7 +62,7 @@ TEST(RenderDeathTest, OptionsOutOfRangeAreProgrammerMistakes) {
 
 // A vertex that is not finite takes only its own triangles with it.
 TEST(RenderTriangles, VerticesThatAreNotFiniteAreSkipped) {
-  for (const double bad : {kNaN, kInf, -kInf}) {
+  for (const double bad : {kNotANumber, kInfinite, -kInfinite}) {
     FlatScene scene({32, 32});
     scene.add({{1, 1}, {31, 1}, {31, 31}, {1, 31}}, {1, 1, 1});
     scene.mesh().positions[3].y = static_cast<float>(bad);
@@ -171,7 +171,7 @@ TEST(RenderMaterial, AbsurdNumbersStayInsideTheSprite) {
   layers::Material& material = scene.materials[scene.parts[0].material];
   material.specular = {1e30f, 1, 1};
   material.shininess = 1e4f;
-  material.emissive = {static_cast<float>(kNaN), -5, 1e30f};
+  material.emissive = {static_cast<float>(kNotANumber), -5, 1e30f};
   const Texel t = render_all(scene, {33, 33}).sprite.texel(16, 16);
   EXPECT_EQ(t.a, 255);
   EXPECT_EQ(t.r, 0);    // NaN is shown as nothing
@@ -186,7 +186,7 @@ TEST(RenderMaterial, TexturesWithoutCoordinatesOrTexelsAreHarmless) {
   EXPECT_EQ(missing.counters.texture_samples, 0);
   EXPECT_EQ(missing.sprite.texel(16, 16).a, 255);
   scene = content::textured_quad_scene();
-  for (vec2& uv : scene.meshes[scene.parts[0].mesh].uvs) uv = {static_cast<float>(kNaN), 1e38f};
+  for (vec2& uv : scene.meshes[scene.parts[0].mesh].uvs) uv = {static_cast<float>(kNotANumber), 1e38f};
   EXPECT_EQ(render_all(scene, {33, 33}).sprite.texel(16, 16).a, 255);
   scene.textures[0] = layers::Texture();
   EXPECT_EQ(render_all(scene, {33, 33}).counters.texture_samples, 0);

@@ -17,8 +17,8 @@ using layers::LayerState;
 using tests::moved_by;
 using tests::turned_by;
 
-constexpr double kPi = std::numbers::pi;
-const dmat4 kAhead = moved_by({0, 0, -10});
+constexpr double kHalfTurn_rad = std::numbers::pi;
+const dmat4 kFacing = moved_by({0, 0, -10});
 
 struct Box : tests::World {
   explicit Box(const dvec3& half_size = {1, 1, 1}, layers::BoundKind kind = layers::BoundKind::Box8)
@@ -33,10 +33,10 @@ struct Box : tests::World {
 // Turned by a few degrees about the vertical, a box shows one more side; by more, a larger part of it.
 TEST(TurnedFacesOf, OneSideOfATurningBoxComesIntoViewSteadily) {
   const Box box;
-  const LayerState then = box.at(kAhead);
+  const LayerState then = box.at(kFacing);
   double before = 0;
   for (const double angle : {0.15, 0.3, 0.6, 0.9}) {
-    const TurnedFaces t = box.compare(then, box.at(kAhead * turned_by(angle, {0, 1, 0})));
+    const TurnedFaces t = box.compare(then, box.at(kFacing * turned_by(angle, {0, 1, 0})));
     EXPECT_TRUE(t.computed);
     EXPECT_EQ(t.count, 1) << angle;
     EXPECT_GT(t.px, before);
@@ -46,7 +46,8 @@ TEST(TurnedFacesOf, OneSideOfATurningBoxComesIntoViewSteadily) {
 
 TEST(TurnedFacesOf, SizeIsThatOfTheSideOnTheDisplay) {
   const Box box;
-  const TurnedFaces t = box.compare(box.at(kAhead), box.at(kAhead * turned_by(kPi / 2, {0, 1, 0})));
+  const TurnedFaces t =
+      box.compare(box.at(kFacing), box.at(kFacing * turned_by(kHalfTurn_rad / 2, {0, 1, 0})));
   // A quarter turn: what was a side (4 corners at 9 m) is the front now.
   const double focal = 512 / std::tan(layers::CameraState{}.fov_y_rad / 2);
   EXPECT_EQ(t.count, 1);
@@ -59,15 +60,15 @@ TEST(TurnedFacesOf, SizeIsThatOfTheSideOnTheDisplay) {
 // sees.
 TEST(TurnedFacesOf, TurningBackShowsNothingNew) {
   const Box box;
-  const LayerState turned = box.at(kAhead * turned_by(0.5, {0, 1, 0}));
-  EXPECT_EQ(box.compare(turned, box.at(kAhead)).count, 0);
+  const LayerState turned = box.at(kFacing * turned_by(0.5, {0, 1, 0}));
+  EXPECT_EQ(box.compare(turned, box.at(kFacing)).count, 0);
 }
 
 TEST(TurnedFacesOf, TheEyeThatMovesAroundCountsAsTheLayerThatTurns) {
   const Box box;
-  const dmat4 around = kAhead * turned_by(-0.4, {0, 1, 0}) * inverse(kAhead);
-  const TurnedFaces by_eye = box.compare(box.at(kAhead), box.at(kAhead, tests::camera_at(around)));
-  const TurnedFaces by_layer = box.compare(box.at(kAhead), box.at(kAhead * turned_by(0.4, {0, 1, 0})));
+  const dmat4 around = kFacing * turned_by(-0.4, {0, 1, 0}) * inverse(kFacing);
+  const TurnedFaces by_eye = box.compare(box.at(kFacing), box.at(kFacing, tests::camera_at(around)));
+  const TurnedFaces by_layer = box.compare(box.at(kFacing), box.at(kFacing * turned_by(0.4, {0, 1, 0})));
   EXPECT_EQ(by_eye.count, 1);
   EXPECT_NEAR(by_eye.px, by_layer.px, 1e-9);
 }
@@ -76,17 +77,18 @@ TEST(TurnedFacesOf, TheEyeThatMovesAroundCountsAsTheLayerThatTurns) {
 // whatever the rounding makes of the edges.
 TEST(TurnedFacesOf, FlatLayersDoNotFlicker) {
   const Box plate({1, 1, 0});
-  const LayerState front = plate.at(kAhead), edge = plate.at(kAhead * turned_by(kPi / 2, {0, 1, 0}));
+  const LayerState front = plate.at(kFacing),
+                   edge = plate.at(kFacing * turned_by(kHalfTurn_rad / 2, {0, 1, 0}));
   for (int i = -50; i <= 50; ++i) {
     const double angle = i * 0.03;  // never quite a quarter turn
-    EXPECT_EQ(plate.compare(front, plate.at(kAhead * turned_by(angle, {0, 1, 0}))).count, 0) << angle;
+    EXPECT_EQ(plate.compare(front, plate.at(kFacing * turned_by(angle, {0, 1, 0}))).count, 0) << angle;
   }
   for (const double noise : {-1e-12, 1e-12}) {
-    const LayerState near_edge = plate.at(kAhead * turned_by(kPi / 2 + noise, {0, 1, 0}));
+    const LayerState near_edge = plate.at(kFacing * turned_by(kHalfTurn_rad / 2 + noise, {0, 1, 0}));
     EXPECT_LT(plate.compare(front, near_edge).px, 1e-3);
     EXPECT_LT(plate.compare(edge, near_edge).px, 1e-3);
   }
-  const TurnedFaces about = plate.compare(front, plate.at(kAhead * turned_by(kPi, {0, 1, 0})));
+  const TurnedFaces about = plate.compare(front, plate.at(kFacing * turned_by(kHalfTurn_rad, {0, 1, 0})));
   EXPECT_EQ(about.count, 1);
   EXPECT_GT(about.px, 100);
 }
@@ -94,7 +96,7 @@ TEST(TurnedFacesOf, FlatLayersDoNotFlicker) {
 TEST(TurnedFacesOf, PointsAndLinesHaveNoSides) {
   for (const dvec3& half_size : {dvec3(0, 0, 0), dvec3(1, 0, 0)}) {
     const Box box(half_size);
-    const TurnedFaces t = box.compare(box.at(kAhead), box.at(kAhead * turned_by(2, {1, 2, 3})));
+    const TurnedFaces t = box.compare(box.at(kFacing), box.at(kFacing * turned_by(2, {1, 2, 3})));
     EXPECT_TRUE(t.computed);
     EXPECT_EQ(t.count, 0);
     EXPECT_EQ(t.px, 0);
@@ -106,7 +108,7 @@ TEST(TurnedFacesOf, MirroredLayersAreJudgedLikeOthers) {
   const Box box;
   const dmat4 mirror = glm::scale(dmat4(1.0), dvec3(-1, 1, 1));
   const auto turned = [&](const dmat4& m) {
-    return box.compare(box.at(kAhead * m), box.at(kAhead * turned_by(0.4, {0, 1, 0}) * m));
+    return box.compare(box.at(kFacing * m), box.at(kFacing * turned_by(0.4, {0, 1, 0}) * m));
   };
   EXPECT_EQ(turned(mirror).count, 1);
   EXPECT_NEAR(turned(mirror).px, turned(dmat4(1.0)).px, 1e-9);
@@ -133,7 +135,7 @@ TEST(TurnedFacesOf, OutsideTheDisplayNothingIsShown) {
 TEST(TurnedFacesOf, IsNotComputedWhereItWasNotAskedFor) {
   Box box;
   box.bound.follows_faces = false;
-  const LayerState state = box.at(kAhead);
+  const LayerState state = box.at(kFacing);
   EXPECT_TRUE(state.world_from_body.empty());
   const TurnedFaces t = box.compare(state, state);
   EXPECT_FALSE(t.computed);

@@ -1,5 +1,5 @@
-// The house rules that a compiler does not check: includes go one way, folders that touch no files stay that way, and files stay
-// short enough to be read.
+// The house rules that a compiler does not check: includes go one way, folders that touch no files stay that way, and files,
+// functions and rooms stay small enough to be read.
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -137,6 +137,47 @@ TEST(House, FilesAreShortEnoughToRead) {
   auto folders = all_folders();
   folders.push_back("tests");
   for (const auto& file : sources_of(folders)) EXPECT_LE(file.lines.size(), 500u) << file.path;
+}
+
+/// Lines from the signature to the closing brace of every function, by the line where it begins: a block at the
+/// indentation of a namespace or a class whose first line ends with the parameters' (or the initialisers')
+/// parenthesis and a brace. How the formatter sets code makes this enough.
+std::map<std::size_t, std::size_t> function_lengths(const std::vector<std::string>& lines) {
+  std::map<std::size_t, std::size_t> lengths;
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    const std::string& line = lines[i];
+    const std::size_t indent = line.find_first_not_of(' ');
+    if (line.empty() || line.back() != '{' || (indent != 0 && indent != 2) || line[indent] == '/') continue;
+    const std::size_t parenthesis = line.find_last_of(')');
+    if (parenthesis == std::string::npos || line.find_first_of(";={", parenthesis) != line.size() - 1)
+      continue;
+    std::size_t end = i + 1;
+    while (end < lines.size() && lines[end].rfind(line.substr(0, indent) + "}", 0) != 0) ++end;
+    lengths[i + 1] = end - i + 1;
+  }
+  return lengths;
+}
+
+TEST(House, FunctionsAreShortEnoughToRead) {
+  EXPECT_EQ(function_lengths(
+                {"int f(int a) {", "  return a;", "}", "struct S {", "  void g() const {", "  }", "};"}),
+            (std::map<std::size_t, std::size_t>{{1, 3}, {5, 2}}));
+  auto folders = all_folders();
+  folders.push_back("tests");
+  std::size_t functions = 0;
+  for (const auto& file : sources_of(folders))
+    for (const auto& [line, length] : function_lengths(file.lines)) {
+      ++functions;
+      EXPECT_LE(length, 45u) << file.path << ":" << line;
+    }
+  EXPECT_GT(functions, 1000u) << "the scan found almost nothing: is the pattern still right?";
+}
+
+TEST(House, RoomsAreSmallEnoughToKnow) {
+  std::map<std::string, int> sources;
+  for (const auto& file : sources_of({"sequences"}))
+    if (file.path.extension() == ".cpp") ++sources[file.path.parent_path().string()];
+  for (const auto& [room, count] : sources) EXPECT_LE(count, 30) << room;
 }
 
 }  // namespace

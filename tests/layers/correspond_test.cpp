@@ -106,62 +106,73 @@ bool near(const Pair& a, dvec2 then_px, dvec2 now_px) {
   return glm::length(a.then_px - then_px) < 1e-4 && glm::length(a.now_px - now_px) < 1e-4;
 }
 
+/// A box of any size anywhere around a camera, moved a little or a lot between two states.
+struct MovedBox {
+  explicit MovedBox(unsigned seed)
+      : random(seed),
+        half_size(uniform3(random, 0.2, seed % 3 == 0 ? 40 : 4)),
+        world(box_corners(half_size)) {
+    world.view.display_px = {800, 600};
+    place = moved_by(uniform3(random, -6, 6) + dvec3(0, 0, -4)) * random_rotation(random);
+    const double step = seed % 2 ? 0.05 : 0.6;
+    motion = moved_by(uniform3(random, -step, step)) * turned_by(step * 0.5, uniform3(random, -1, 1));
+  }
+  std::mt19937 random;
+  dvec3 half_size;
+  World world;
+  CameraState camera;
+  dmat4 place, motion;
+};
+
+/// The vertices of what both views see of the box's surface, from all its planes and all of theirs.
+std::vector<Pair> vertices_in_both_views(const MovedBox& box) {
+  std::vector<Plane> planes;
+  for (int axis = 0; axis < 3; ++axis) {
+    dvec3 n(0.0);
+    n[axis] = 1;
+    planes.push_back({n, box.half_size[axis]});
+    planes.push_back({-n, box.half_size[axis]});
+  }
+  for (const dmat4& m : {box.place, box.motion * box.place})
+    for (const Plane& p : view_planes(m, box.world.view, box.camera)) planes.push_back(p);
+  std::vector<Pair> vertices;
+  for (const dvec3& p : surface_vertices(planes, 6))
+    vertices.push_back({project(box.place, box.world.view, box.camera, p),
+                        project(box.motion * box.place, box.world.view, box.camera, p)});
+  return vertices;
+}
+
+bool is_matched(const Correspondences& matched, const Pair& vertex) {
+  for (std::size_t i = 0; i < matched.point.size(); ++i)
+    if (near(vertex, matched.then_px[i], matched.now_px[i])) return true;
+  return false;
+}
+
 TEST(CorrespondOracle, TheSurfaceInBothViewsByBruteForce) {
-  // Boxes of all sizes anywhere around a camera, moved a little or a lot between the states.
   int clipped_trials = 0, empty_trials = 0;
   for (unsigned seed = 0; seed < 400; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    std::mt19937 random(seed);
-    const dvec3 half_size = uniform3(random, 0.2, seed % 3 == 0 ? 40 : 4);
-    World world(box_corners(half_size));
-    world.view.display_px = {800, 600};
-    const dmat4 place = moved_by(uniform3(random, -6, 6) + dvec3(0, 0, -4)) * random_rotation(random);
-    const double step = seed % 2 ? 0.05 : 0.6;
-    const dmat4 motion =
-        moved_by(uniform3(random, -step, step)) * turned_by(step * 0.5, uniform3(random, -1, 1));
-    const CameraState camera;
-    const LayerState then = world.at(place), now = world.at(motion * place);
-    const Correspondences matched = correspond(then, now, world.bound.hull);
+    MovedBox box(seed);
+    const LayerState then = box.world.at(box.place), now = box.world.at(box.motion * box.place);
+    const Correspondences matched = correspond(then, now, box.world.bound.hull);
     if (!then.clipped && !now.clipped && matched.overlap) continue;
-
-    std::vector<Plane> planes;
-    for (int axis = 0; axis < 3; ++axis) {
-      dvec3 n(0.0);
-      n[axis] = 1;
-      planes.push_back({n, half_size[axis]});
-      planes.push_back({-n, half_size[axis]});
-    }
-    for (const dmat4& m : {place, motion * place}) {
-      for (const Plane& p : view_planes(m, world.view, camera)) planes.push_back(p);
-    }
-    std::vector<Pair> expected;
-    for (const dvec3& p : surface_vertices(planes, 6)) {
-      expected.push_back(
-          {project(place, world.view, camera, p), project(motion * place, world.view, camera, p)});
-    }
+    const std::vector<Pair> expected = vertices_in_both_views(box);
     EXPECT_EQ(matched.overlap, !expected.empty());
     if (!matched.overlap) {
       ++empty_trials;
       continue;
     }
     ++clipped_trials;
-    expect_in_both_views(matched, world.view.display_px);
+    expect_in_both_views(matched, box.world.view.display_px);
     // Every vertex of the intersection is among the matched points. (The reverse does not hold: diagonals of
-    // faces are cut too.)
-    for (const Pair& vertex : expected) {
-      const bool found = std::any_of(matched.point.begin(), matched.point.end(), [&, i = 0](int) mutable {
-        const bool same = near(vertex, matched.then_px[i], matched.now_px[i]);
-        ++i;
-        return same;
-      });
-      EXPECT_TRUE(found) << vertex.then_px.x << ' ' << vertex.then_px.y;
-    }
-    // And no matched point lies outside of their bounds.
+    // faces are cut too.) And no matched point lies outside of their bounds.
     layers::RectD bounds;
-    for (const Pair& vertex : expected) bounds.include(vertex.then_px);
-    for (const dvec2 p : matched.then_px) {
-      EXPECT_LT(std::max({bounds.lo.x - p.x, p.x - bounds.hi.x, bounds.lo.y - p.y, p.y - bounds.hi.y}), 1e-4);
+    for (const Pair& vertex : expected) {
+      EXPECT_TRUE(is_matched(matched, vertex)) << vertex.then_px.x << ' ' << vertex.then_px.y;
+      bounds.include(vertex.then_px);
     }
+    for (const dvec2 p : matched.then_px)
+      EXPECT_LT(std::max({bounds.lo.x - p.x, p.x - bounds.hi.x, bounds.lo.y - p.y, p.y - bounds.hi.y}), 1e-4);
   }
   EXPECT_GT(clipped_trials, 100);
   EXPECT_GT(empty_trials, 5);

@@ -16,7 +16,7 @@ using tests::box_corners;
 using tests::moved_by;
 
 const std::vector<dmat4> kOneBody = {dmat4(1.0)};
-constexpr BoundKind kKinds[] = {BoundKind::Box8, BoundKind::Dop14, BoundKind::Dop26};
+constexpr BoundKind kBoundKinds[] = {BoundKind::Box8, BoundKind::Dop14, BoundKind::Dop26};
 
 /// Points on a sphere: every face of every kind has an area.
 std::vector<dvec3> sphere() {
@@ -29,7 +29,7 @@ std::vector<dvec3> sphere() {
 
 TEST(FaceEnds, CountThePlanesOfEachKindAndCloseTheSurface) {
   const std::size_t planes[] = {6, 14, 26};
-  for (const BoundKind kind : kKinds) {
+  for (const BoundKind kind : kBoundKinds) {
     EXPECT_EQ(face_ends(kind).size(), planes[static_cast<int>(kind)]);
     EXPECT_EQ(face_ends(kind).back(), static_cast<int>(topology(kind).size()));
     dvec3 sum(0.0);  // the areas of a closed surface add up to nothing
@@ -59,7 +59,7 @@ TEST(PointNormals, OfACubePointIntoTheEightOctants) {
 }
 
 TEST(PointNormals, OfEveryKindAreOfUnitLengthAndPointOutwards) {
-  for (const BoundKind kind : kKinds) {
+  for (const BoundKind kind : kBoundKinds) {
     const Polyhedron hull = bounding_polyhedron(sphere(), kind);
     const auto normals = point_normals(hull.points, hull, kOneBody);
     for (std::size_t i = 0; i < normals.size(); ++i) {
@@ -72,7 +72,7 @@ TEST(PointNormals, OfEveryKindAreOfUnitLengthAndPointOutwards) {
 // The richer kinds have points between faces without area, at the plate's rim: they sample no side, and must
 // not make up a third one.
 TEST(PointNormals, OfAFlatLayerAreThoseOfItsTwoSides) {
-  for (const BoundKind kind : kKinds) {
+  for (const BoundKind kind : kBoundKinds) {
     const Polyhedron plate = bounding_polyhedron(box_corners({2, 3, 0}), kind);
     int front = 0, back = 0;
     for (const dvec3& n : point_normals(plate.points, plate, kOneBody)) {

@@ -256,71 +256,69 @@ struct Broken {
   std::string message;
 };
 
+const Broken kBroken[] = {
+    {[](Scene& s) { s.meshes[1].indices[7] = 24; },
+     "mesh 'cube': index 24 of triangle 2, rule: below 24 vertices"},
+    {[](Scene& s) { s.meshes[1].indices.pop_back(); }, "mesh 'cube': 35 indices, rule: three per triangle"},
+    {[](Scene& s) { s.meshes[1].uvs.pop_back(); },
+     "mesh 'cube': 23 uvs, rule: none or as many as positions, 24"},
+    {[](Scene& s) { s.meshes[1].positions[3].y = NAN; },
+     "mesh 'cube': position 3 has component nan, rule: finite"},
+    {[](Scene& s) { s.meshes[0].normals[0].x = HUGE_VALF; },
+     "mesh 'ground': normal 0 has component inf, rule: finite"},
+    {[](Scene& s) { s.meshes[0].name.clear(), s.meshes[0].positions[0].x = NAN; }, "mesh 0: position 0"},
+    {[](Scene& s) { s.meshes[0].joints.resize(s.meshes[0].positions.size()); },
+     "mesh 'ground': 81 joints and 0 weights, rule: as many joints as weights"},
+    {[](Scene& s) { s.textures[0].rgba.pop_back(); },
+     "texture 'checker': 16383 bytes, rule: 4 · width · height"},
+    {[](Scene& s) { s.textures[0].width = 0; }, "texture 'checker': size 0 × 64, rule: at least 1 × 1"},
+    {[](Scene& s) { s.materials[0].texture = 1; }, "material 'ground': texture 1, rule: from -1 to below 1"},
+    {[](Scene& s) { s.materials[1].opacity = 1.5f; }, "material 'cube': opacity 1.5, rule: from 0 to 1"},
+    {[](Scene& s) { s.materials[1].opacity = NAN; }, "material 'cube': opacity nan, rule: from 0 to 1"},
+    {[](Scene& s) { s.materials[1].base_color.y = -1; },
+     "material 'cube': base color has component -1, rule: at least 0"},
+    {[](Scene& s) { s.nodes[3].parent = 4; }, "node 'moon': parent 4, rule: -1 or a node before it, below 3"},
+    {[](Scene& s) { s.nodes[3].parent = 3; }, "node 'moon': parent 3, rule: -1 or a node before it, below 3"},
+    {[](Scene& s) { s.nodes[3].parent = -2; }, "node 'moon': parent -2"},
+    {[](Scene& s) { s.nodes[1].local.translation.z = kNan; },
+     "node 'cube': translation has component nan, rule: finite"},
+    {[](Scene& s) {
+       s.nodes[1].local.rotation = {0, 0, 0, 0};
+     },
+     "node 'cube': rotation is zero, rule: not zero"},
+    {[](Scene& s) { s.tracks[0].node = 99; }, "track of node 0: node 99, rule: from 0 to below 5"},
+    {[](Scene& s) {
+       std::get<SpinTrack>(s.tracks[0].motion).axis = {0, 0, 0};
+     },
+     "track of node 'cube': spin axis is zero, rule: not zero"},
+    {[](Scene& s) { std::get<FlightTrack>(s.tracks[2].motion).position.times_s[2] = 1; },
+     "track of node 'camera': position time 2 is 1, rule: above the one before, 1"},
+    {[](Scene& s) { std::get<FlightTrack>(s.tracks[2].motion).position.times_s.pop_back(); },
+     "track of node 'camera': position has 4 times and 5 values, rule: as many"},
+    {[](Scene& s) { std::get<FlightTrack>(s.tracks[2].motion).position = {}; },
+     "track of node 'camera': flight with 0 positions, rule: at least 1"},
+    {[](Scene& s) {
+       std::get<FlightTrack>(s.tracks[2].motion).bank_rad = {{0}, {kNan}, Interpolation::Linear};
+     },
+     "track of node 'camera': bank key 0 is nan, rule: finite"},
+    {[](Scene& s) {
+       s.lights[1].direction = {0, 0, 0};
+     },
+     "light 'sun': direction is zero, rule: not zero"},
+    {[](Scene& s) { s.lights[1].node = 5; }, "light 'sun': node 5, rule: from -1 to below 5"},
+    {[](Scene& s) { s.cameras[0].near_m = 0; },
+     "camera 'camera': near_m 0 and far_m 100, rule: 0 < near < far"},
+    {[](Scene& s) { s.cameras[0].fov_y_rad = 3.2; },
+     "camera 'camera': fov_y_rad 3.2, rule: above 0 and below pi"},
+    {[](Scene& s) { s.parts[2].mesh = 3; }, "part 'orbit/moon': mesh 3, rule: from 0 to below 3"},
+    {[](Scene& s) { s.parts[2].material = -1; }, "part 'orbit/moon': material -1, rule: from 0 to below 3"},
+    {[](Scene& s) { s.parts[2].skin = 0; }, "part 'orbit/moon': skin 0, rule: from -1 to below 0"},
+    {[](Scene& s) { s.background.x = NAN; }, "scene: background has component nan, rule: finite"},
+    {[](Scene& s) { s.active_camera = 1; }, "scene: active camera 1, rule: from 0 to below 1"},
+};
+
 TEST(FirstDefect, NamesItemValueAndRule) {
-  const Broken cases[] = {
-      {[](Scene& s) { s.meshes[1].indices[7] = 24; },
-       "mesh 'cube': index 24 of triangle 2, rule: below 24 vertices"},
-      {[](Scene& s) { s.meshes[1].indices.pop_back(); }, "mesh 'cube': 35 indices, rule: three per triangle"},
-      {[](Scene& s) { s.meshes[1].uvs.pop_back(); },
-       "mesh 'cube': 23 uvs, rule: none or as many as positions, 24"},
-      {[](Scene& s) { s.meshes[1].positions[3].y = NAN; },
-       "mesh 'cube': position 3 has component nan, rule: finite"},
-      {[](Scene& s) { s.meshes[0].normals[0].x = HUGE_VALF; },
-       "mesh 'ground': normal 0 has component inf, rule: finite"},
-      {[](Scene& s) { s.meshes[0].name.clear(), s.meshes[0].positions[0].x = NAN; }, "mesh 0: position 0"},
-      {[](Scene& s) { s.meshes[0].joints.resize(s.meshes[0].positions.size()); },
-       "mesh 'ground': 81 joints and 0 weights, rule: as many joints as weights"},
-      {[](Scene& s) { s.textures[0].rgba.pop_back(); },
-       "texture 'checker': 16383 bytes, rule: 4 · width · height"},
-      {[](Scene& s) { s.textures[0].width = 0; }, "texture 'checker': size 0 × 64, rule: at least 1 × 1"},
-      {[](Scene& s) { s.materials[0].texture = 1; },
-       "material 'ground': texture 1, rule: from -1 to below 1"},
-      {[](Scene& s) { s.materials[1].opacity = 1.5f; }, "material 'cube': opacity 1.5, rule: from 0 to 1"},
-      {[](Scene& s) { s.materials[1].opacity = NAN; }, "material 'cube': opacity nan, rule: from 0 to 1"},
-      {[](Scene& s) { s.materials[1].base_color.y = -1; },
-       "material 'cube': base color has component -1, rule: at least 0"},
-      {[](Scene& s) { s.nodes[3].parent = 4; },
-       "node 'moon': parent 4, rule: -1 or a node before it, below 3"},
-      {[](Scene& s) { s.nodes[3].parent = 3; },
-       "node 'moon': parent 3, rule: -1 or a node before it, below 3"},
-      {[](Scene& s) { s.nodes[3].parent = -2; }, "node 'moon': parent -2"},
-      {[](Scene& s) { s.nodes[1].local.translation.z = kNan; },
-       "node 'cube': translation has component nan, rule: finite"},
-      {[](Scene& s) {
-         s.nodes[1].local.rotation = {0, 0, 0, 0};
-       },
-       "node 'cube': rotation is zero, rule: not zero"},
-      {[](Scene& s) { s.tracks[0].node = 99; }, "track of node 0: node 99, rule: from 0 to below 5"},
-      {[](Scene& s) {
-         std::get<SpinTrack>(s.tracks[0].motion).axis = {0, 0, 0};
-       },
-       "track of node 'cube': spin axis is zero, rule: not zero"},
-      {[](Scene& s) { std::get<FlightTrack>(s.tracks[2].motion).position.times_s[2] = 1; },
-       "track of node 'camera': position time 2 is 1, rule: above the one before, 1"},
-      {[](Scene& s) { std::get<FlightTrack>(s.tracks[2].motion).position.times_s.pop_back(); },
-       "track of node 'camera': position has 4 times and 5 values, rule: as many"},
-      {[](Scene& s) { std::get<FlightTrack>(s.tracks[2].motion).position = {}; },
-       "track of node 'camera': flight with 0 positions, rule: at least 1"},
-      {[](Scene& s) {
-         std::get<FlightTrack>(s.tracks[2].motion).bank_rad = {{0}, {kNan}, Interpolation::Linear};
-       },
-       "track of node 'camera': bank key 0 is nan, rule: finite"},
-      {[](Scene& s) {
-         s.lights[1].direction = {0, 0, 0};
-       },
-       "light 'sun': direction is zero, rule: not zero"},
-      {[](Scene& s) { s.lights[1].node = 5; }, "light 'sun': node 5, rule: from -1 to below 5"},
-      {[](Scene& s) { s.cameras[0].near_m = 0; },
-       "camera 'camera': near_m 0 and far_m 100, rule: 0 < near < far"},
-      {[](Scene& s) { s.cameras[0].fov_y_rad = 3.2; },
-       "camera 'camera': fov_y_rad 3.2, rule: above 0 and below pi"},
-      {[](Scene& s) { s.parts[2].mesh = 3; }, "part 'orbit/moon': mesh 3, rule: from 0 to below 3"},
-      {[](Scene& s) { s.parts[2].material = -1; }, "part 'orbit/moon': material -1, rule: from 0 to below 3"},
-      {[](Scene& s) { s.parts[2].skin = 0; }, "part 'orbit/moon': skin 0, rule: from -1 to below 0"},
-      {[](Scene& s) { s.background.x = NAN; }, "scene: background has component nan, rule: finite"},
-      {[](Scene& s) { s.active_camera = 1; }, "scene: active camera 1, rule: from 0 to below 1"},
-  };
-  for (const Broken& broken : cases) {
+  for (const Broken& broken : kBroken) {
     Scene scene = tests::moving_scene();
     broken.harm(scene);
     EXPECT_THAT(first_defect(scene), HasSubstr(broken.message));

@@ -200,6 +200,19 @@ TEST(ShadeState, MovingCasterChangesTheShadesAndNotTheirBase) {
   EXPECT_FALSE(now[kSpecular].same_pixels(then[kSpecular]));  // dimmed by the shadow
 }
 
+TEST(ShadeState, AnotherLampChangesTheShadow) {
+  Room room = full_room();
+  Light other;
+  other.name = "other";
+  other.kind = Light::Kind::Point;
+  other.position = {0, 3, 0};
+  room.scene.lights.push_back(other);
+  const auto then = states_of(room);
+  room.scene.lights.back().position = {0, 3, 1};
+  const auto now = states_of(room);
+  EXPECT_FALSE(now[kShadow].same_pixels(then[kShadow]));
+}
+
 TEST(ShadeState, AtRestAllPixelsAreTheSame) {
   const auto then = states_of(full_room()), now = states_of(full_room());
   for (std::size_t i = 0; i < then.size(); ++i) EXPECT_TRUE(now[i].same_pixels(then[i])) << i;

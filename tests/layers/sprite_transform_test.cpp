@@ -17,7 +17,7 @@ using layers::LayerState;
 using layers::PlacementOptions;
 using layers::SpritePlacement;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNanExtent = std::numeric_limits<double>::quiet_NaN();
 /// Pixels per metre at a distance of 10 m on the default display.
 const double kPixelsPerMetre = 512 / std::tan(0.45) / 10;
 
@@ -107,7 +107,7 @@ TEST(PlaceSprite, NothingInViewIsEmpty) {
   EXPECT_TRUE(Card({10, 10}, {1100, 512}).place().empty());
   // A broken camera.
   layers::CameraState broken;
-  broken.world_from_camera[2][1] = kNan;
+  broken.world_from_camera[2][1] = kNanExtent;
   const LayerState nowhere = card.world.at(moved_by({0, 0, -10}), broken);
   const SpritePlacement placement = place_sprite(nowhere, nowhere, card.world.bound.hull, {}, {});
   EXPECT_TRUE(placement.empty());
@@ -188,9 +188,9 @@ TEST(PlaceSpriteForMotionBlur, AtRestNothingChanges) {
   const SpritePlacement sharp = card.place();
   EXPECT_EQ(card.place({0, 0}, {}, blurred({0, 0}, 0.25)), sharp);
   EXPECT_EQ(card.place({0, 0}, {}, blurred({5, 3}, 1)), sharp);
-  EXPECT_EQ(card.place({0, 0}, {}, blurred({kNan, 3}, 0.5)), sharp);
+  EXPECT_EQ(card.place({0, 0}, {}, blurred({kNanExtent, 3}, 0.5)), sharp);
   EXPECT_EQ(card.place({0, 0}, {}, blurred({HUGE_VAL, 0}, 0.5)), sharp);
-  EXPECT_EQ(card.place({0, 0}, {}, blurred({5, 3}, kNan)), sharp);
+  EXPECT_EQ(card.place({0, 0}, {}, blurred({5, 3}, kNanExtent)), sharp);
 }
 
 TEST(PlaceSpriteForMotionBlur, ThereAndBackHaveTheSameLattice) {
@@ -438,9 +438,11 @@ TEST(PlaceSprite, ASpriteThatIsTooLargeLosesGrowthThenResolution) {
 
 TEST(PlaceSprite, OptionsThatAreNotNumbersCountAsDefaults) {
   const Card card({100, 50}, {20, 512}, 0.2);
-  PlacementOptions options{
-      .slab_directions = -5, .min_rotation_gain = kNan, .resolution_scale = kNan, .max_sprite_px = 4096};
-  const ExtentOptions extents{.expected_reuse_frames = kNan, .max_growth = kNan};
+  PlacementOptions options{.slab_directions = -5,
+                           .min_rotation_gain = kNanExtent,
+                           .resolution_scale = kNanExtent,
+                           .max_sprite_px = 4096};
+  const ExtentOptions extents{.expected_reuse_frames = kNanExtent, .max_growth = kNanExtent};
   const SpritePlacement placement = card.place({5, 5}, extents, options);
   EXPECT_FALSE(placement.empty());
   EXPECT_TRUE(is_finite(placement.screen_from_sprite));

@@ -15,7 +15,7 @@ namespace {
 using layers::CameraState;
 using layers::LayerState;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNanState = std::numeric_limits<double>::quiet_NaN();
 
 dvec2 screen_of(const CameraState& camera, layers::ivec2 display, const dvec3& world) {
   return layers::screen_from_clip(layers::clip_from_world(camera, display) * dvec4(world, 1), display);
@@ -124,11 +124,11 @@ TEST(Capture, PointsAroundTheNearPlaneByABillionth) {
 TEST(Capture, NothingFiniteIsOutOfView) {
   const World world(box_corners({1, 1, 1}));
   CameraState camera;
-  camera.world_from_camera[3][0] = kNan;
+  camera.world_from_camera[3][0] = kNanState;
   EXPECT_TRUE(world.at(moved_by({0, 0, -5}), camera).clip_points.empty());
   EXPECT_FALSE(world.at(moved_by({0, 0, -5}), camera).in_view());
   EXPECT_FALSE(world.at(glm::scale(dmat4(1.0), dvec3(1e300)) * moved_by({0, 0, -1e300})).in_view());
-  for (const double bad : {0.0, -1.0, kNan}) {
+  for (const double bad : {0.0, -1.0, kNanState}) {
     camera = {};
     camera.near_m = bad;
     EXPECT_FALSE(world.at(moved_by({0, 0, -5}), camera).in_view()) << bad;
@@ -203,7 +203,7 @@ TEST(SamePixels, LightsDoNotChangeAnUnlitLayer) {
 
 TEST(SamePixels, NotANumberIsNeverTheSame) {
   const World world(box_corners({1, 1, 1}));
-  const LayerState state = world.at(moved_by({0, kNan, -5}));
+  const LayerState state = world.at(moved_by({0, kNanState, -5}));
   EXPECT_FALSE(state.same_pixels(state));
 }
 

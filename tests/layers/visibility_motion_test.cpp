@@ -20,10 +20,10 @@ using tests::Dice;
 using tests::Points;
 using tests::World;
 
-constexpr dvec3 kEye{0, 0, 10};
+constexpr dvec3 kFixedEye{0, 0, 10};
 
 VisibilityOrder frame(VisibilitySorter& sorter, const std::vector<Points>& bodies) {
-  return sorter.sort(kEye, World{kEye, bodies}.occluders());
+  return sorter.sort(kFixedEye, World{kFixedEye, bodies}.occluders());
 }
 
 // Neither is before the other; they only get nearer by turns. An order by distance would flicker.
@@ -144,15 +144,16 @@ TEST(VisibilityMotion, LayersMayChangeGroupAndBodies) {
   const Points near = box({0, 0, 0}, {1, 1, 1}), far = box({0, 0, -5}, {1, 1, 1}),
                nearest = box({0, 0, 5}, {1, 1, 1});
   std::vector<Occluder> layers = {{0, OrderGroup::Normal, {near}}, {1, OrderGroup::Normal, {far}}};
-  EXPECT_THAT(sorter.sort(kEye, layers).order, ElementsAre(1, 0));
+  EXPECT_THAT(sorter.sort(kFixedEye, layers).order, ElementsAre(1, 0));
   layers[0].group = OrderGroup::Background;
-  EXPECT_THAT(sorter.sort(kEye, layers).order, ElementsAre(0, 1));
+  EXPECT_THAT(sorter.sort(kFixedEye, layers).order, ElementsAre(0, 1));
   layers[0].group = OrderGroup::Normal;
   layers[1].bodies = {far, nearest};
-  EXPECT_EQ(sorter.sort(kEye, layers).merged.size(), 1u) << "the second is behind the first and before it";
+  EXPECT_EQ(sorter.sort(kFixedEye, layers).merged.size(), 1u)
+      << "the second is behind the first and before it";
   layers[1].bodies = {nearest};
   VisibilityOrder o;
-  for (int k = 0; k < 6; ++k) o = sorter.sort(kEye, layers);
+  for (int k = 0; k < 6; ++k) o = sorter.sort(kFixedEye, layers);
   EXPECT_THAT(o.groups_back_to_front, ElementsAre(ElementsAre(0), ElementsAre(1)));
 }
 
@@ -218,14 +219,14 @@ TEST(VisibilityMotion, LastDrawnIsFirstMetAlongEveryRay) {
     }
     // Touching bodies may hide each other by a thousandth; rays of no tolerance must not look there.
     VisibilitySorter sorter({0, 0});
-    const VisibilityOrder o = sorter.sort(kEye, World{kEye, bodies}.occluders());
+    const VisibilityOrder o = sorter.sort(kFixedEye, World{kFixedEye, bodies}.occluders());
     for (int r = 0; r < 2000; ++r) {
-      const dvec3 along = glm::normalize(dice.in_cube(5) - kEye);
+      const dvec3 along = glm::normalize(dice.in_cube(5) - kFixedEye);
       int drawn_last = -1, met_first = -1;
       double nearest = HUGE_VAL;
       for (int g = 0; g < static_cast<int>(o.groups_back_to_front.size()); ++g)
         for (const int layer : o.groups_back_to_front[g]) {
-          const double at = hit(kEye, along, centres[layer], halves[layer]);
+          const double at = hit(kFixedEye, along, centres[layer], halves[layer]);
           if (at == HUGE_VAL) continue;
           drawn_last = g;
           if (at < nearest) nearest = at, met_first = g;

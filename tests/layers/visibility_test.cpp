@@ -346,7 +346,8 @@ TEST(VisibilitySorter, ExplicitPairsThatCannotBeKeptAreReported) {
 }
 
 TEST(VisibilitySorter, ExplicitPairAgainstTheGroupsIsReported) {
-  auto layers = World{kEye, {box({0, 0, 0}, {1, 1, 1}), box({0, 0, -3}, {1, 1, 1})}}.occluders();
+  const World world{kEye, {box({0, 0, 0}, {1, 1, 1}), box({0, 0, -3}, {1, 1, 1})}};
+  auto layers = world.occluders();  // they refer to the world's points
   layers[0].group = OrderGroup::Background;
   const VisibilityOrder o = VisibilitySorter().sort(kEye, layers, std::vector<ExplicitPair>{{1, 0}});
   EXPECT_EQ(o.defect, "explicit pair: layer 1 behind layer 0 contradicts the groups of the two");

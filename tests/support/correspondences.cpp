@@ -4,15 +4,12 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 
 namespace talisman::tests {
-namespace {
-
-constexpr double kPi = 3.14159265358979323846;
-
-}  // namespace
+namespace {}  // namespace
 
 Pairs with_noise(Pairs pairs, std::uint64_t seed, double amount_px) {
   Random random(seed);
@@ -73,7 +70,7 @@ void add_coincident(std::vector<HardCase>& cases) {
 }
 
 void add_collinear(std::vector<HardCase>& cases) {
-  const std::array<double, 4> angles{0, kPi / 2, kPi / 4, 1.1};
+  const std::array<double, 4> angles{0, std::numbers::pi / 2, std::numbers::pi / 4, 1.1};
   for (double angle : angles)
     cases.push_back({"collinear at " + std::to_string(angle), near_collinear(4, 8, 0, angle)});
   for (int e = 3; e <= 12; ++e)

@@ -19,7 +19,7 @@ using namespace layers;
 
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+constexpr double kHalfTurn_rad = std::numbers::pi;
 
 void add_cell(Mesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
   mesh.indices.insert(mesh.indices.end(), {a, b, c, a, c, d});
@@ -128,7 +128,7 @@ Mesh bar_mesh() {
     const double y = 2.0 * ring / kRings;
     const double upper = std::clamp((y - 0.5) / 1.0, 0.0, 1.0);
     for (int corner = 0; corner < 4; ++corner) {
-      const double angle = kPi / 4 + corner * kPi / 2;
+      const double angle = kHalfTurn_rad / 4 + corner * kHalfTurn_rad / 2;
       const dvec3 out{std::sin(angle), 0, std::cos(angle)};
       mesh.positions.push_back(vec3(dvec3{0, y, 0} + 0.15 * std::sqrt(2.0) * out));
       mesh.normals.push_back(vec3(out));
@@ -209,8 +209,8 @@ Mesh sphere_mesh(int rings, int segments, double radius_m, double bumps_m) {
     for (int segment = 0; segment <= segments; ++segment) {
       // The seam repeats segment 0, and a pole is one point, bit by bit.
       const bool pole = ring == 0 || ring == rings;
-      const double latitude = kPi * ring / rings;
-      const double longitude = pole ? 0 : 2 * kPi * (segment % segments) / segments;
+      const double latitude = kHalfTurn_rad * ring / rings;
+      const double longitude = pole ? 0 : 2 * kHalfTurn_rad * (segment % segments) / segments;
       const dvec3 point = pole ? dvec3{0, ring == 0 ? radius_m : -radius_m, 0}
                                : sphere_point(latitude, longitude, radius_m, bumps_m);
       const dvec3 normal =
@@ -262,7 +262,7 @@ Scene moving_scene() {
   Scene scene;
   scene.background = {0.3f, 0.45f, 0.7f};
   Node ground = node_at("ground");
-  ground.local.rotation = glm::angleAxis(-kPi / 2, dvec3{1, 0, 0});
+  ground.local.rotation = glm::angleAxis(-kHalfTurn_rad / 2, dvec3{1, 0, 0});
   const int ground_node = add_node(scene, ground);
   const int cube = add_node(scene, node_at("cube", {0, 1, 0}));
   const int orbit = add_node(scene, node_at("orbit", {0, 1.2, 0}));
@@ -301,7 +301,7 @@ Scene skinned_bar_scene() {
   scene.materials[0].two_sided = true;  // the tube is open at its ends
 
   TransformTrack bend;
-  const glm::dquat straight(1, 0, 0, 0), bent = glm::angleAxis(kPi / 3, dvec3{0, 0, 1});
+  const glm::dquat straight(1, 0, 0, 0), bent = glm::angleAxis(kHalfTurn_rad / 3, dvec3{0, 0, 1});
   bend.rotation = {{0, 1, 2}, {straight, bent, straight}, Interpolation::Linear};
   bend.loop = true;
   scene.tracks.push_back({upper, bend});

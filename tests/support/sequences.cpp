@@ -3,6 +3,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include "tests/support/random_scene.h"
 #include "tests/support/room.h"
 #include "tests/support/scenes.h"
 
@@ -18,32 +19,6 @@ sequences::Sequence sequence_of(const char* name, layers::Scene scene, int frame
   sequence.layers = layers::factor(scene, sequence.layer_specs);
   sequence.scene = std::make_shared<const layers::Scene>(std::move(scene));
   return sequence;
-}
-
-/// The bar of skinned_bar_scene beside the ball.
-void add_bar(Scene& scene) {
-  const Scene bar = skinned_bar_scene();
-  const int nodes = static_cast<int>(scene.nodes.size());
-  Node stand;
-  stand.name = "stand";
-  stand.local.translation = {-1.6, 0.1, 0};
-  scene.nodes.push_back(stand);
-  const int shift = nodes + 1;
-  for (Node node : bar.nodes) {
-    node.parent = node.parent < 0 ? nodes : node.parent + shift;
-    scene.nodes.push_back(node);
-  }
-  layers::Skin skin = bar.skins[0];
-  for (int& joint : skin.joints) joint += shift;
-  scene.skins.push_back(skin);
-  for (layers::Track track : bar.tracks) {
-    track.node += shift;
-    scene.tracks.push_back(track);
-  }
-  scene.meshes.push_back(bar.meshes[bar.parts[0].mesh]);
-  scene.materials.push_back(bar.materials[bar.parts[0].material]);
-  scene.parts.push_back({"bar", bar.parts[0].node + shift, static_cast<int>(scene.meshes.size()) - 1,
-                         static_cast<int>(scene.materials.size()) - 1, 0});
 }
 
 void add_pane(Scene& scene) {
@@ -131,7 +106,7 @@ sequences::Variant every_effect(int frames) {
   room.scene.materials[1].specular = vec3(0.6f);
   room.scene.materials[1].shininess = 40;
   room.scene.lights[0].attenuation = {0.6, 0, 0.02};
-  add_bar(room.scene);
+  add_skinned_bar(room.scene, {-1.6, 0.1, 0});
   add_sail(room.scene);
   add_pane(room.scene);
   add_motion(room.scene);

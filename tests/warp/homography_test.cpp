@@ -15,7 +15,9 @@ namespace {
 
 using namespace tests;
 
-FitResult fit(const Pairs& pairs, Curve curve) { return warp::fit(pairs.then_px, pairs.now_px, curve); }
+FitResult fit_homography(const Pairs& pairs, Curve curve) {
+  return warp::fit(pairs.then_px, pairs.now_px, curve);
+}
 
 /// The homogeneous sum of squares in normalised coordinates, H scaled to denominator 1 at the centroid: what
 /// `per` minimises.
@@ -52,7 +54,7 @@ TEST(FitPerspective, ExactHomographiesAreRecovered) {
     const int n = 4 + static_cast<int>(seed % 12);
     const Pairs pairs = exact_perspective(seed, n, gentle_perspective(seed), 200);
     for (Curve curve : {Curve::per, Curve::per2, Curve::pers2}) {
-      const FitResult r = fit(pairs, curve);
+      const FitResult r = fit_homography(pairs, curve);
       // Four random points may lie nearly on a line with a third: there the answer may be a simpler family.
       if (n == 4 && r.status == FitStatus::Degenerate) continue;
       EXPECT_EQ(r.status, FitStatus::Converged) << name(curve) << " seed " << seed;
@@ -65,7 +67,7 @@ TEST(FitPerspective, ExactHomographiesAreRecovered) {
 TEST(FitPerspective, FourCornersOfAQuadrilateralAreExact) {
   const Pairs pairs{{{0, 0}, {100, 0}, {100, 100}, {0, 100}}, {{10, 5}, {90, 20}, {80, 80}, {5, 95}}};
   for (Curve curve : {Curve::per, Curve::per2, Curve::peri, Curve::per2i, Curve::pers2}) {
-    const FitResult r = fit(pairs, curve);
+    const FitResult r = fit_homography(pairs, curve);
     EXPECT_EQ(r.status, FitStatus::Converged) << name(curve);
     EXPECT_EQ(r.warp.family, Family::Perspective) << name(curve);
     EXPECT_LT(r.max_px, 1e-6) << name(curve);
@@ -76,7 +78,7 @@ TEST(FitPerspective, FourCornersOfAQuadrilateralAreExact) {
 TEST(FitPerspective, FourPointsWithADuplicateFallBackToAffine) {
   const Pairs pairs{{{0, 0}, {100, 0}, {100, 100}, {0, 0}}, {{1, 2}, {103, 0}, {99, 104}, {1, 2}}};
   for (Curve curve : {Curve::per, Curve::per2}) {
-    const FitResult r = fit(pairs, curve);
+    const FitResult r = fit_homography(pairs, curve);
     EXPECT_EQ(r.status, FitStatus::Degenerate) << name(curve);
     EXPECT_EQ(r.warp.family, Family::Affine) << name(curve);
     EXPECT_LT(r.max_px, 1e-9) << name(curve);
@@ -89,10 +91,10 @@ TEST(FitPerspective, AHorizonAmongThePointsFallsBackToAffine) {
   const Pairs dart{{{0, 0}, {100, 0}, {100, 100}, {0, 100}}, {{0, 0}, {100, 0}, {20, 20}, {0, 100}}};
   const Pairs split = exact_perspective(24, 12, {1, 0, 0.01, 0, 1, 0, 0, 0, -5.12});
   for (Curve curve : {Curve::per, Curve::per2}) {
-    EXPECT_EQ(fit(dart, curve).status, FitStatus::Degenerate) << name(curve);
-    EXPECT_NE(fit(dart, curve).warp.family, Family::Perspective) << name(curve);
-    EXPECT_EQ(fit(split, curve).status, FitStatus::Degenerate) << name(curve);
-    EXPECT_NE(fit(split, curve).warp.family, Family::Perspective) << name(curve);
+    EXPECT_EQ(fit_homography(dart, curve).status, FitStatus::Degenerate) << name(curve);
+    EXPECT_NE(fit_homography(dart, curve).warp.family, Family::Perspective) << name(curve);
+    EXPECT_EQ(fit_homography(split, curve).status, FitStatus::Degenerate) << name(curve);
+    EXPECT_NE(fit_homography(split, curve).warp.family, Family::Perspective) << name(curve);
   }
 }
 
@@ -124,8 +126,8 @@ TEST(FitPostDivide, EqualsCeresOnTheWorkload) {
   double worst = 0;
   for (std::uint64_t seed = 0; seed < 1000; ++seed) {
     const Pairs pairs = with_noise(moving_box(seed, 8 + static_cast<int>(seed % 19)), seed, 1);
-    const FitResult ours = fit(pairs, Curve::per2);
-    FitResult theirs = ceres_post_divide(pairs.then_px, pairs.now_px, fit(pairs, Curve::aff).warp);
+    const FitResult ours = fit_homography(pairs, Curve::per2);
+    FitResult theirs = ceres_post_divide(pairs.then_px, pairs.now_px, fit_homography(pairs, Curve::aff).warp);
     measure(pairs.then_px, pairs.now_px, theirs);
     ASSERT_EQ(ours.status, FitStatus::Converged) << "seed " << seed;
     EXPECT_LE(ours.rms_px, theirs.rms_px * (1 + 1e-9)) << "seed " << seed;
@@ -137,10 +139,10 @@ TEST(FitPostDivide, EqualsCeresOnTheWorkload) {
 TEST(FitPostDivide, IsNeverWorseThanAffineOrTheHomogeneousFit) {
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     const Pairs pairs = with_noise(moving_box(seed, 4 + static_cast<int>(seed % 23)), seed, 5);
-    const double ours = fit(pairs, Curve::per2).rms_px;
-    EXPECT_LE(ours, fit(pairs, Curve::aff).rms_px * (1 + 1e-9) + 1e-9) << "seed " << seed;
-    if (fit(pairs, Curve::per).warp.family == Family::Perspective) {
-      EXPECT_LE(ours, fit(pairs, Curve::per).rms_px * (1 + 1e-9) + 1e-9) << "seed " << seed;
+    const double ours = fit_homography(pairs, Curve::per2).rms_px;
+    EXPECT_LE(ours, fit_homography(pairs, Curve::aff).rms_px * (1 + 1e-9) + 1e-9) << "seed " << seed;
+    if (fit_homography(pairs, Curve::per).warp.family == Family::Perspective) {
+      EXPECT_LE(ours, fit_homography(pairs, Curve::per).rms_px * (1 + 1e-9) + 1e-9) << "seed " << seed;
     }
   }
 }
@@ -149,7 +151,7 @@ TEST(FitPostDivide, OneIterationTooFewIsReported) {
   const Pairs pairs = with_noise(moving_box(5, 14), 5, 30);
   const FitResult r = warp::fit(pairs.then_px, pairs.now_px, Curve::per2, {.max_iterations = 1});
   EXPECT_EQ(r.status, FitStatus::NotConverged);
-  EXPECT_LE(r.rms_px, fit(pairs, Curve::aff).rms_px);
+  EXPECT_LE(r.rms_px, fit_homography(pairs, Curve::aff).rms_px);
 }
 
 TEST(CeresMaxNorm, EnclosesTheSmallestDisc) {
@@ -179,7 +181,8 @@ TEST(CeresMaxNorm, SumOfSquaresEqualsTheClosedForms) {
     const Pairs pairs = moving_box(seed, 14);
     for (Curve curve : {Curve::trn, Curve::iso, Curve::so, Curve::aff}) {
       const double theirs = ceres_max_norm(pairs.then_px, pairs.now_px, family_of(curve), 1).rms_px;
-      EXPECT_NEAR(fit(pairs, curve).rms_px, theirs, 1e-7 * theirs) << name(curve) << " seed " << seed;
+      EXPECT_NEAR(fit_homography(pairs, curve).rms_px, theirs, 1e-7 * theirs)
+          << name(curve) << " seed " << seed;
     }
   }
 }

@@ -19,7 +19,7 @@ namespace {
 
 using namespace tests;
 
-constexpr std::array kLinear{Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine};
+constexpr std::array kLinearPairs{Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine};
 constexpr std::array kAll{Family::Translation, Family::Isotropic, Family::XyScale, Family::Affine,
                           Family::Perspective};
 
@@ -27,9 +27,9 @@ FitResult fit_max_norm(const Pairs& pairs, Family family, const FitOptions& opti
   return warp::fit_max_norm(pairs.then_px, pairs.now_px, family, options);
 }
 
-double gap(const FitResult& r) { return r.max_px > 0 ? (r.max_px - r.max_lower_bound_px) / r.max_px : 0; }
+double gap_of(const FitResult& r) { return r.max_px > 0 ? (r.max_px - r.max_lower_bound_px) / r.max_px : 0; }
 
-bool all_finite(const FitResult& r) {
+bool is_all_finite(const FitResult& r) {
   for (int column = 0; column < 3; ++column)
     for (int row = 0; row < 3; ++row)
       if (!std::isfinite(r.warp.now_from_then[column][row])) return false;
@@ -51,11 +51,11 @@ Pairs any_pairs(std::uint64_t seed) {
 TEST(FitMaxNorm, CertifiesTenThousandSeedsInEveryLinearFamily) {
   for (int seed = 0; seed < 10000; ++seed) {
     const Pairs pairs = any_pairs(seed);
-    for (Family family : kLinear) {
+    for (Family family : kLinearPairs) {
       const FitResult r = fit_max_norm(pairs, family);
-      ASSERT_TRUE(all_finite(r)) << seed;
+      ASSERT_TRUE(is_all_finite(r)) << seed;
       ASSERT_LE(r.max_lower_bound_px, r.max_px) << seed;
-      ASSERT_LE(gap(r), 1e-6 * (1 + 1e-9)) << "seed " << seed << " " << name(family);
+      ASSERT_LE(gap_of(r), 1e-6 * (1 + 1e-9)) << "seed " << seed << " " << name(family);
       ASSERT_TRUE(r.status == FitStatus::Converged || r.status == FitStatus::Degenerate) << seed;
       ASSERT_EQ(r.warp.family, family);
     }
@@ -109,10 +109,10 @@ TEST(FitMaxNorm, NeverWorseThanLeastSquares) {
   constexpr std::array kCurves{Curve::trn, Curve::iso, Curve::so, Curve::aff};
   for (int seed = 0; seed < 2000; ++seed) {
     const Pairs pairs = any_pairs(seed);
-    for (std::size_t k = 0; k < kLinear.size(); ++k) {
+    for (std::size_t k = 0; k < kLinearPairs.size(); ++k) {
       const FitResult plain = fit(pairs.then_px, pairs.now_px, kCurves[k]);
       if (plain.status != FitStatus::Converged) continue;
-      ASSERT_LE(fit_max_norm(pairs, kLinear[k]).max_px, plain.max_px * (1 + 1e-6)) << seed << " " << k;
+      ASSERT_LE(fit_max_norm(pairs, kLinearPairs[k]).max_px, plain.max_px * (1 + 1e-6)) << seed << " " << k;
     }
   }
 }
@@ -133,7 +133,7 @@ TEST(FitMaxNorm, RicherFamiliesAreNeverWorse) {
 TEST(FitMaxNorm, DecisionAgreesWithValueOnBothSidesOfTheThreshold) {
   for (int seed = 0; seed < 1000; ++seed) {
     const Pairs pairs = moving_box(seed, 8 + seed % 20);
-    for (Family family : kLinear) {
+    for (Family family : kLinearPairs) {
       const FitResult value = fit_max_norm(pairs, family);
       for (double factor : {0.2, 0.8, 0.97, 0.99999, 1.00001, 1.03, 1.2, 4.0}) {
         FitOptions options;
@@ -158,7 +158,7 @@ TEST(FitMaxNorm, DecisionExactlyAtTheOptimumEndsWithACertifiedValue) {
     options.decide_px = planted.optimum_px;
     const FitResult r = fit_max_norm(planted.pairs, Family::Affine, options);
     ASSERT_EQ(r.status, FitStatus::Converged) << seed;
-    ASSERT_LE(gap(r), 1e-6) << seed;
+    ASSERT_LE(gap_of(r), 1e-6) << seed;
   }
 }
 
@@ -196,7 +196,7 @@ TEST(FitMaxNorm, RecoversExactMaps) {
   }
 }
 
-// As many equations as unknowns: zero error is possible, and the gap is relative to rounding, not to zero.
+// As many equations as unknowns: zero error is possible, and the gap_of is relative to rounding, not to zero.
 TEST(FitMaxNorm, JustEnoughPointsAreFittedExactly) {
   for (int seed = 0; seed < 200; ++seed) {
     Pairs three = exact_affine(seed, 3, gentle_affine(seed));
@@ -222,7 +222,7 @@ TEST(FitMaxNorm, SpritesOfAllSizesAtAllOffsets) {
       // The coordinates at 1e8 are multiples of 1.5e-8; a sprite of 1e-3 px still has five digits.
       const Pairs pairs = with_noise(
           exact_affine(11, 12, {1.01, 0.02, 1, -0.01, 0.99, 2}, size / 2, {offset, -offset}), 3, size / 50);
-      for (Family family : kLinear) {
+      for (Family family : kLinearPairs) {
         const FitResult r = fit_max_norm(pairs, family);
         EXPECT_EQ(r.status, FitStatus::Converged) << size << " at " << offset << " " << name(family);
         EXPECT_LE(r.max_px - r.max_lower_bound_px, 1e-6 * r.max_px + 1e-14 * offset * 100)
@@ -237,11 +237,11 @@ TEST(FitMaxNorm, NearlyCollinearPointsStayCertified) {
     for (int seed = 0; seed < 20; ++seed) {
       const Pairs pairs = tests::near_collinear(seed, 14, std::pow(10, -e), 0.1 * seed);
       const FitResult r = fit_max_norm(pairs, Family::Affine);
-      EXPECT_TRUE(all_finite(r));
+      EXPECT_TRUE(is_all_finite(r));
       EXPECT_LE(r.max_lower_bound_px, r.max_px);
       EXPECT_NE(r.status, FitStatus::NotConverged) << "1e-" << e << " seed " << seed;
       if (e <= 8) {
-        // What is lost beside the gap is rounding over width.
+        // What is lost beside the gap_of is rounding over width.
         EXPECT_LE(r.max_px - r.max_lower_bound_px, 1e-6 * r.max_px + 2 * std::pow(10, e - 12))
             << "1e-" << e << " seed " << seed;
       }
@@ -294,7 +294,7 @@ TEST(FitMaxNorm, CoincidentAndCollinearPointsAreReportedDegenerate) {
     const FitResult r = fit_max_norm(coincident, family);
     EXPECT_EQ(r.status, FitStatus::Degenerate) << name(family);
     EXPECT_EQ(r.warp.family, Family::Translation) << "and the family that was used is named";
-    EXPECT_LE(gap(r), 1e-6) << "with its own certificate";
+    EXPECT_LE(gap_of(r), 1e-6) << "with its own certificate";
   }
   for (double angle : {0.0, 0.4, 1.5707963267948966})
     EXPECT_EQ(fit_max_norm(tests::near_collinear(4, 8, 0, angle), Family::Affine).status,
@@ -307,7 +307,7 @@ TEST(FitMaxNorm, TooFewPointsAreReported) {
     for (int n = 0; n < points_needed(family); ++n) {
       const FitResult r = fit_max_norm(with_noise(exact_affine(n + 1, n, gentle_affine(1)), 3, 5), family);
       EXPECT_EQ(r.status, FitStatus::TooFewPoints) << name(family) << " " << n;
-      EXPECT_TRUE(all_finite(r)) << name(family) << " " << n;
+      EXPECT_TRUE(is_all_finite(r)) << name(family) << " " << n;
     }
 }
 
@@ -328,7 +328,7 @@ TEST(FitMaxNorm, HardCasesAreFiniteAndHonest) {
     for (Family family : kAll) {
       const FitResult r = fit_max_norm(hard.pairs, family);
       const std::string where = hard.name + ", " + std::string(name(family));
-      EXPECT_TRUE(all_finite(r)) << where;
+      EXPECT_TRUE(is_all_finite(r)) << where;
       EXPECT_LE(r.max_lower_bound_px, r.max_px) << where;
       EXPECT_EQ(r.status == FitStatus::NotFinite, !hard.finite) << where;
       if (r.status != FitStatus::Converged) continue;
@@ -344,7 +344,7 @@ TEST(FitMaxNorm, GarbageIsSurvived) {
     const Pairs pairs = tests::garbage(seed);
     for (Family family : kAll) {
       const FitResult r = fit_max_norm(pairs, family);
-      ASSERT_TRUE(all_finite(r)) << seed << " " << name(family);
+      ASSERT_TRUE(is_all_finite(r)) << seed << " " << name(family);
       ASSERT_LE(r.max_lower_bound_px, r.max_px) << seed << " " << name(family);
     }
   }

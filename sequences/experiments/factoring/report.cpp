@@ -89,10 +89,10 @@ std::vector<FactoredLayer> layers_and_frame(const FactoringReport& report) {
 
 // --- Tables
 
-std::string percent(double share, int digits) { return fixed(100 * share, digits); }
+std::string percent_with(double share, int digits) { return fixed(100 * share, digits); }
 
 std::string rms_and_max(const ErrorSum& sum) {
-  return percent(sum.rms(), 4) + " / " + percent(sum.largest, 2);
+  return percent_with(sum.rms(), 4) + " / " + percent_with(sum.largest, 2);
 }
 
 Table prediction_table(const FactoringReport& report) {
@@ -104,8 +104,8 @@ Table prediction_table(const FactoringReport& report) {
     const PredictionCheck& c = layer.check;
     table.rows.push_back({layer.name, std::to_string(layer.shade_layers), rms_and_max(c.by_formula),
                           rms_and_max(c.predicted), rms_and_max(c.measured), rms_and_max(c.unexplained),
-                          rms_and_max(c.elsewhere), percent(c.largest_bound, 2),
-                          percent(c.largest_share_of_bound, 1), std::to_string(c.beyond_bound)});
+                          rms_and_max(c.elsewhere), percent_with(c.largest_bound, 2),
+                          percent_with(c.largest_share_of_bound, 1), std::to_string(c.beyond_bound)});
   }
   return table;
 }
@@ -116,7 +116,8 @@ Table loss_table(const FactoringReport& report) {
     const DiffSummary s = summarize(loss.frames);
     table.rows.push_back({name(loss.picture), fixed(rms_code_values(s.mean.psnr_db), 3),
                           std::to_string(s.worst.max_difference), fixed(s.mean.psnr_db, 2),
-                          fixed(s.mean.ssim, 5), fixed(s.mean.flip, 5), percent(s.mean.changed_pixels, 2)});
+                          fixed(s.mean.ssim, 5), fixed(s.mean.flip, 5),
+                          percent_with(s.mean.changed_pixels, 2)});
   }
   return table;
 }
@@ -127,7 +128,7 @@ Table cost_table(const FactoringReport& report) {
               {},
               1};
   const auto row = [&](const char* name, const SettingResult& r) {
-    table.rows.push_back({name, percent(r.mean_update_rate, 1), std::to_string(r.renders),
+    table.rows.push_back({name, percent_with(r.mean_update_rate, 1), std::to_string(r.renders),
                           std::to_string(r.polygons), std::to_string(r.pixels), std::to_string(r.chunks),
                           fixed(r.plan.mean, 2), fixed(r.render.mean, 1), fixed(r.composite.mean, 2),
                           fixed(r.modelled_ms, 2)});
@@ -140,7 +141,9 @@ Table cost_table(const FactoringReport& report) {
 /// "factored: 61.2 % of the unfactored polygons, …".
 std::string savings(const FactoringReport& report) {
   const SettingResult &a = report.result.factored, &b = report.result.unfactored;
-  const auto share = [](double part, double whole) { return whole > 0 ? percent(part / whole, 1) : "-"; };
+  const auto share = [](double part, double whole) {
+    return whole > 0 ? percent_with(part / whole, 1) : "-";
+  };
   return "factored, % of unfactored: polygons " + share(double(a.polygons), double(b.polygons)) +
          ", pixels " + share(double(a.pixels), double(b.pixels)) + ", chunks " +
          share(double(a.chunks), double(b.chunks)) + ", modelled " + share(a.modelled_ms, b.modelled_ms) +

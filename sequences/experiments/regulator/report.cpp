@@ -9,6 +9,7 @@
 #include "sequences/experiments/columns.h"
 #include "sequences/experiments/regulator/plots.h"
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/number_text.h"
 #include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
@@ -99,8 +100,6 @@ Json calibration_json(const RegulatorReport& report) {
 
 // --- Tables
 
-std::string percent(double part, double whole) { return whole > 0 ? fixed(100 * part / whole, 1) : "-"; }
-
 Table cost_table(const RegulatorReport& report) {
   Table table{{"policy", "knob", "rate %", "weighted %", "polygons %", "pixels %", "chunks %", "plan ms",
                "render ms", "composite ms", "median ms", "modelled ms"},
@@ -110,11 +109,11 @@ Table cost_table(const RegulatorReport& report) {
   for (const SettingResult& r : report.settings)
     table.rows.push_back(
         {r.setting.series, r.setting.knob(), fixed(100 * r.mean_update_rate, 1),
-         fixed(100 * r.weighted_update_rate, 1), percent(double(r.polygons), double(reference.polygons)),
-         percent(double(r.pixels), double(reference.pixels)),
-         percent(double(r.chunks), double(reference.chunks)), fixed(r.plan.mean, 2), fixed(r.render.mean, 1),
-         fixed(r.composite.mean, 1), fixed(r.plan.median + r.render.median + r.composite.median, 1),
-         fixed(r.modelled_ms, 2)});
+         fixed(100 * r.weighted_update_rate, 1), percent_of(double(r.polygons), double(reference.polygons)),
+         percent_of(double(r.pixels), double(reference.pixels)),
+         percent_of(double(r.chunks), double(reference.chunks)), fixed(r.plan.mean, 2),
+         fixed(r.render.mean, 1), fixed(r.composite.mean, 1),
+         fixed(r.plan.median + r.render.median + r.composite.median, 1), fixed(r.modelled_ms, 2)});
   return table;
 }
 
@@ -141,8 +140,8 @@ Table lookahead_table(const LookaheadCurve& curve) {
   const auto row = [&](const std::string& name, const std::string& n, std::int64_t renders, double rate,
                        const std::string& max_px, const std::string& plan_us) {
     table.rows.push_back({name, n, std::to_string(renders),
-                          percent(double(renders), double(curve.threshold_renders)),
-                          percent(double(renders - curve.oracle_renders), double(curve.oracle_renders)),
+                          percent_of(double(renders), double(curve.threshold_renders)),
+                          percent_of(double(renders - curve.oracle_renders), double(curve.oracle_renders)),
                           fixed(100 * rate, 1), max_px, plan_us});
   };
   row("threshold", "-", curve.threshold_renders, curve.threshold_rate, "-", "-");

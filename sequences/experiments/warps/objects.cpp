@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <numbers>
 #include <sstream>
 
 #include <glm/geometric.hpp>
@@ -24,7 +25,6 @@ using layers::Mesh;
 using layers::vec2;
 using layers::vec3;
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kFlat = 0.05;  // [LS97 4.2], footnote 6
 
 // --- Meshes
@@ -95,7 +95,8 @@ Mesh box() {
 Mesh vase() {
   Mesh mesh;
   add_grid(mesh, 48, 32, [](double u, double v) {
-    const double angle = -2 * kPi * u, radius = 0.32 + 0.2 * std::sin(2 * kPi * v + 0.3) - 0.06 * v;
+    const double angle = -2 * std::numbers::pi * u,
+                 radius = 0.32 + 0.2 * std::sin(2 * std::numbers::pi * v + 0.3) - 0.06 * v;
     return vec3(radius * std::cos(angle), 2 * v - 1, radius * std::sin(angle));
   });
   add_smooth_normals(mesh);
@@ -205,7 +206,7 @@ WarpObject load_shipped(const ShippedObject& shipped) {
 using Rotations = layers::Keys<glm::dquat>;
 
 glm::dquat turn(const dvec3& axis, double degrees) {
-  return glm::angleAxis(degrees * kPi / 180, glm::normalize(axis));
+  return glm::angleAxis(degrees * std::numbers::pi / 180, glm::normalize(axis));
 }
 
 layers::Track keyed(int node, layers::Keys<dvec3> translation, Rotations rotation) {
@@ -253,7 +254,7 @@ WarpMotion spin(int axis, int degrees_per_s) {
   const std::string letter(1, "xyz"[axis]), rate = std::to_string(degrees_per_s);
   return {"spin-" + letter + "-" + rate,
           "rotating about " + letter + " at " + rate + " degrees per second",
-          {{kObjectNode, layers::SpinTrack{direction, degrees_per_s * kPi / 180}}}};
+          {{kObjectNode, layers::SpinTrack{direction, degrees_per_s * std::numbers::pi / 180}}}};
 }
 
 /// sRGB checkers of 8 × 8 fields: detail on which an error of a pixel can be seen.
@@ -301,11 +302,13 @@ WarpObject load_warp_object(const std::string& name_or_file) {
 
 std::vector<WarpObject> load_warp_objects(std::vector<MissingObject>& missing) {
   std::vector<WarpObject> objects;
-  for (const ShippedObject& shipped : kShipped) try {
+  for (const ShippedObject& shipped : kShipped) {
+    try {
       objects.push_back(load_shipped(shipped));
     } catch (const InputError& error) {
       missing.push_back({shipped.name, error.what()});
     }
+  }
   return objects;
 }
 
@@ -336,7 +339,7 @@ layers::Scene stage(const WarpObject& object, const WarpMotion& motion) {
   layers::Scene scene;
   scene.background = vec3(0.12f, 0.15f, 0.2f);
   scene.nodes = {{"camera", -1, {}}, {"object", -1, {{0, 0, -5}, {1, 0, 0, 0}, {1, 1, 1}}}};
-  scene.cameras = {{"camera", kCameraNode, kPi / 4, 0.05, 100}};
+  scene.cameras = {{"camera", kCameraNode, std::numbers::pi / 4, 0.05, 100}};
   scene.tracks = motion.tracks;
   scene.meshes = {object.mesh};
   layers::Material material;

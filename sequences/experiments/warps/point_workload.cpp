@@ -2,6 +2,7 @@
 #include "sequences/experiments/warps/point_workload.h"
 
 #include <cmath>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -9,11 +10,10 @@
 namespace talisman::sequences {
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
 constexpr double kDisplay_px = kWorkloadDisplay_px;
 
 dvec2 project(dvec3 camera_point) {
-  static const double focal = kDisplay_px / 2 / std::tan(kPi / 8);
+  static const double focal = kDisplay_px / 2 / std::tan(std::numbers::pi / 8);
   const double w = -camera_point.z;
   return {kDisplay_px / 2 + focal * camera_point.x / w, kDisplay_px / 2 - focal * camera_point.y / w};
 }
@@ -91,8 +91,8 @@ SpacePairs moving_box_in_space(std::uint64_t seed, int points) {
   const dvec3 half{distance * random.uniform(0.02, 0.15), distance * random.uniform(0.02, 0.15),
                    distance * random.uniform(0.02, 0.15)};
   const dvec3 centre = dvec3{random.uniform(-0.25, 0.25), random.uniform(-0.25, 0.25), -1} * distance;
-  const auto pose = random_turn(random, 0, kPi);
-  const auto step = random_turn(random, 0.2 * kPi / 180, 3 * kPi / 180);
+  const auto pose = random_turn(random, 0, std::numbers::pi);
+  const auto step = random_turn(random, 0.2 * std::numbers::pi / 180, 3 * std::numbers::pi / 180);
   const dvec3 move =
       dvec3{random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)} * distance;
   SpacePairs pairs;

@@ -33,12 +33,12 @@ void time_in_rounds(MeasuredSolvers& rungs, const Workbench& bench, std::size_t 
 }
 
 /// Of all rungs, at the count that is shown.
-struct Scatter {
+struct ScatteredRungs {
   std::vector<double> time_us, error_px;
 };
 
-Scatter scatter_of(const MeasuredSolvers& rungs) {
-  Scatter at;
+ScatteredRungs scattered(const MeasuredSolvers& rungs) {
+  ScatteredRungs at;
   for (const MeasuredSolver& rung : rungs) {
     at.time_us.push_back(rung.times[kShown].median_us);
     at.error_px.push_back(rung.accuracies[kShown].mean_max_px);
@@ -53,7 +53,7 @@ std::vector<bool> front_of(const MeasuredSolvers& rungs) {
 }
 
 void mark_front(MeasuredSolvers& rungs) {
-  const Scatter at = scatter_of(rungs);
+  const ScatteredRungs at = scattered(rungs);
   const std::vector<bool> front = pareto_front(at.time_us, at.error_px, kLeastGain);
   for (std::size_t k = 0; k < rungs.size(); ++k) rungs[k].on_front = front[k];
 }
@@ -69,7 +69,7 @@ std::string text(const char* pattern, double value) {
 /// Three significant digits without an exponent, for times.
 std::string micro(double us) { return fixed(us, us < 1 ? 3 : us < 10 ? 2 : us < 100 ? 1 : 0); }
 
-std::string percent(double share) {
+std::string short_percent(double share) {
   return std::fabs(share) < 5e-8 ? "0" : text(std::fabs(share) >= 1e4 ? "%.1e" : "%.4g", 100 * share);
 }
 
@@ -112,14 +112,14 @@ Table accuracy_table(const MeasuredSolvers& rungs) {
   for (const MeasuredSolver& rung : rungs) {
     const FitAccuracy& a = rung.accuracies[kShown];
     const std::string of = "/" + std::to_string(rung.inputs);
-    table.rows.push_back({rung.solver.name, std::string(warp::name(rung.solver.family)),
-                          micro(rung.times[kShown].median_us), micro(rung.times[kShown].p99_us),
-                          text("%.4g", a.mean_max_px), percent(a.mean_excess), percent(a.worst_excess),
-                          percent(a.mean_rms_excess), std::to_string(a.unfinished) + of,
-                          rung.solver.promised_gap >= 0 ? std::to_string(a.uncertified) + of : "-",
-                          rung.solver.exact ? power_of_ten(rung.stability.largest_offset_px) : "-",
-                          rung.solver.exact ? power_of_ten(rung.stability.smallest_sprite_px) : "-",
-                          rung.on_front ? "*" : ""});
+    table.rows.push_back(
+        {rung.solver.name, std::string(warp::name(rung.solver.family)), micro(rung.times[kShown].median_us),
+         micro(rung.times[kShown].p99_us), text("%.4g", a.mean_max_px), short_percent(a.mean_excess),
+         short_percent(a.worst_excess), short_percent(a.mean_rms_excess), std::to_string(a.unfinished) + of,
+         rung.solver.promised_gap >= 0 ? std::to_string(a.uncertified) + of : "-",
+         rung.solver.exact ? power_of_ten(rung.stability.largest_offset_px) : "-",
+         rung.solver.exact ? power_of_ten(rung.stability.smallest_sprite_px) : "-",
+         rung.on_front ? "*" : ""});
   }
   return table;
 }
@@ -155,7 +155,7 @@ Plot overview_plot(const MeasuredSolvers& rungs) {
     }
     plot.series.push_back(series);
   }
-  const Scatter at = scatter_of(rungs);
+  const ScatteredRungs at = scattered(rungs);
   plot.series.push_back(front_series(at.time_us, at.error_px, front_of(rungs)));
   return plot;
 }

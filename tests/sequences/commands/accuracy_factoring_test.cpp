@@ -23,7 +23,7 @@ namespace {
 using testing::HasSubstr;
 using tests::Room;
 
-ExperimentOptions quick() { return tests::quick_options("", "", 4); }
+ExperimentOptions quick_factoring() { return tests::quick_options("", "", 4); }
 
 /// All terms, on a floor that the shadow leaves.
 Room full_room() {
@@ -32,7 +32,7 @@ Room full_room() {
 }
 
 FactoringReport measured(const Room& room, int frames = 8) {
-  return measure_factoring_report(tests::sequence_of(room, frames), quick());
+  return measure_factoring_report(tests::sequence_of(room, frames), quick_factoring());
 }
 
 const FactoringReport& full_report() {
@@ -217,7 +217,7 @@ TEST(RoundUp125, IsTheNextRoundNumber) {
 }
 
 TEST(MeasureFactoringReport, BadOptionsAreNamed) {
-  tests::expect_bad_options_named(quick(), [](const ExperimentOptions& options) {
+  tests::expect_bad_options_named(quick_factoring(), [](const ExperimentOptions& options) {
     measure_factoring_report(tests::sequence_of(full_room(), 8), options);
   });
 }

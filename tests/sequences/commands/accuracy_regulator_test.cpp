@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using tests::rows_of;
 using tests::without_times;
 
-ExperimentOptions quick() { return tests::quick_options("0-17", "64x48", 6); }
+ExperimentOptions quick_regulator() { return tests::quick_options("0-17", "64x48", 6); }
 
 const Sequence& moving() {
   static const Sequence sequence = tests::moving_sequence(48);
@@ -31,7 +31,7 @@ const Sequence& moving() {
 class RegulatorReportFiles : public testing::Test {
  protected:
   static const RegulatorReport& report() {
-    static const RegulatorReport measured = measure_regulator_report(moving(), quick());
+    static const RegulatorReport measured = measure_regulator_report(moving(), quick_regulator());
     return measured;
   }
   tests::TemporaryFolder folder_;
@@ -82,13 +82,13 @@ TEST_F(RegulatorReportFiles, JsonSaysWhatWasMeasured) {
 }
 
 TEST_F(RegulatorReportFiles, AllButTheTimesIsTheSameInEveryRun) {
-  const RegulatorReport again = measure_regulator_report(moving(), quick());
+  const RegulatorReport again = measure_regulator_report(moving(), quick_regulator());
   EXPECT_EQ(without_times(settings_csv(again)), without_times(settings_csv(report())));
   EXPECT_EQ(samples_csv(again), samples_csv(report()));
 }
 
 TEST_F(RegulatorReportFiles, OneFrameIsEnough) {
-  ExperimentOptions options = quick();
+  ExperimentOptions options = quick_regulator();
   options.frames = "0";
   const RegulatorReport single = measure_regulator_report(moving(), options);
   EXPECT_TRUE(single.samples.empty()) << "there is no older sprite";
@@ -116,8 +116,9 @@ TEST(MeasureRegulatorReport, DefaultsFitTheDisplayAndTheNumberOfFrames) {
 }
 
 TEST(MeasureRegulatorReport, BadOptionsAreNamed) {
-  tests::expect_bad_options_named(
-      quick(), [](const ExperimentOptions& options) { measure_regulator_report(moving(), options); });
+  tests::expect_bad_options_named(quick_regulator(), [](const ExperimentOptions& options) {
+    measure_regulator_report(moving(), options);
+  });
 }
 
 TEST(RunAccuracy, ExactlyOneExperimentMustBeAskedFor) {

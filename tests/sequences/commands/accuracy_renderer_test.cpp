@@ -24,7 +24,7 @@ using testing::HasSubstr;
 using tests::rows_of;
 using tests::without_times;
 
-ExperimentOptions quick() { return tests::quick_options("0-5", "64x48"); }
+ExperimentOptions quick_renderer() { return tests::quick_options("0-5", "64x48"); }
 
 /// Without shadows, whose finest maps take long.
 const Sequence& shown() {
@@ -36,7 +36,7 @@ const Sequence& shown() {
 class RendererReportFiles : public testing::Test {
  protected:
   static const RendererReport& report() {
-    static const RendererReport measured = measure_renderer_report(shown(), quick());
+    static const RendererReport measured = measure_renderer_report(shown(), quick_renderer());
     return measured;
   }
   tests::TemporaryFolder folder_;
@@ -95,7 +95,7 @@ TEST_F(RendererReportFiles, JsonSaysWhatWasMeasuredAndWhatWasNot) {
 }
 
 TEST_F(RendererReportFiles, AllButTheTimesIsTheSameInEveryRun) {
-  const RendererReport again = measure_renderer_report(shown(), quick());
+  const RendererReport again = measure_renderer_report(shown(), quick_renderer());
   EXPECT_EQ(without_times(knobs_csv(again)), without_times(knobs_csv(report())));
   EXPECT_EQ(without_times(effects_csv(again)), without_times(effects_csv(report())));
 }
@@ -124,7 +124,7 @@ TEST_F(RendererReportFiles, ASheetShowsEveryRungAndTheTruth) {
 
 TEST(MeasureRendererReport, OfAPlainSceneHasNothingToShowOfWhatIsNotCalledFor) {
   const Sequence plain = tests::resting_sequence(1);
-  ExperimentOptions options = quick();
+  ExperimentOptions options = quick_renderer();
   options.frames = "0";
   const RendererReport report = measure_renderer_report(plain, options);
   const tests::TemporaryFolder folder;
@@ -149,7 +149,7 @@ TEST(MeasureRendererReport, DefaultsFitTheDisplayAndTheNumberOfFrames) {
 
 TEST(MeasureRendererReport, BadOptionsAreNamed) {
   tests::expect_bad_options_named(
-      quick(), [](const ExperimentOptions& options) { measure_renderer_report(shown(), options); });
+      quick_renderer(), [](const ExperimentOptions& options) { measure_renderer_report(shown(), options); });
 }
 
 TEST(RunAccuracy, OfTheRendererNamesASequenceThatIsNotThere) {

@@ -13,6 +13,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/sequences/commands/tool.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman {
@@ -21,11 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
-
-struct Outcome {
-  int exit_code = -1;
-  std::string output;  ///< stdout and stderr
-};
 
 class CacheOptions : public testing::Test {
  protected:

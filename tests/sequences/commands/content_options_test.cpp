@@ -8,11 +8,11 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-using ContentOptions = Tool;
+using RunContent = Tool;
 
 constexpr const char* kShort = " --frames 0-1 --size 64x48 --progress none ";
 
-TEST_F(ContentOptions, FolderOfOtherFilesIsTakenOnlyByForce) {
+TEST_F(RunContent, FolderOfOtherFilesIsTakenOnlyByForce) {
   std::filesystem::create_directories(path("photos"));
   write("photos/holiday.png", "not ours");
   expect_bad_input(std::string("render cube.obj") + kShort + "--out photos",
@@ -24,12 +24,12 @@ TEST_F(ContentOptions, FolderOfOtherFilesIsTakenOnlyByForce) {
   EXPECT_EQ(run(std::string("render cube.obj") + kShort + "--out photos").exit_code, 0);
 }
 
-TEST_F(ContentOptions, EmptyFolderNeedsNoForce) {
+TEST_F(RunContent, EmptyFolderNeedsNoForce) {
   std::filesystem::create_directories(path("o"));
   EXPECT_EQ(run(std::string("render cube.obj") + kShort + "--out o").exit_code, 0);
 }
 
-TEST_F(ContentOptions, SpriteThatHadToStaySmallIsSaid) {
+TEST_F(RunContent, SpriteThatHadToStaySmallIsSaid) {
   write(
       "near.yaml",
       "frames: 1\ndisplay: [256, 256]\nshapes: [{id: wall, box: [4, 4, 1]}]\nplacement: {max_sprite_px: 64}\n"
@@ -41,14 +41,14 @@ TEST_F(ContentOptions, SpriteThatHadToStaySmallIsSaid) {
               Not(HasSubstr("texels on a side")));
 }
 
-TEST_F(ContentOptions, BadValuesNameOptionValueAndRule) {
+TEST_F(RunContent, BadValuesNameOptionValueAndRule) {
   const std::string render = "render cube.obj --progress none ";
   expect_bad_input(render + "--exposure 0", {"--exposure is 0", "above 0"});
   expect_bad_input(render + "--turntable -3", {"--turntable is -3", "above 0"});
   expect_bad_input(render + "--assets nowhere", {"--assets is 'nowhere', must be a folder that is there"});
 }
 
-TEST_F(ContentOptions, ThatChangeThePictureBelongToTheRun) {
+TEST_F(RunContent, ThatChangeThePictureBelongToTheRun) {
   const std::string render = std::string("render cube.obj") + kShort + "--out o ";
   ASSERT_EQ(run(render + "--exposure 2").exit_code, 0);
   EXPECT_EQ(run(render + "--exposure 2 --resume").exit_code, 0);
@@ -56,7 +56,7 @@ TEST_F(ContentOptions, ThatChangeThePictureBelongToTheRun) {
   expect_bad_input(render + "--resume", {"exposure was 2.0, is absent"});
 }
 
-TEST_F(ContentOptions, ExposureOverridesThatOfTheFile) {
+TEST_F(RunContent, ExposureOverridesThatOfTheFile) {
   write("lamp.gltf", R"({"asset":{"version":"2.0"},"extensionsUsed":["KHR_lights_punctual"],
 "extensions":{"KHR_lights_punctual":{"lights":[{"type":"directional","intensity":5}]}},
 "scenes":[{"nodes":[0,1]}],"nodes":[{"mesh":0},{"extensions":{"KHR_lights_punctual":{"light":0}}}],

@@ -62,7 +62,7 @@ const Table<Thing>& thing_keys() {
 }
 
 Thing read(const std::string& text) { return thing_keys().read(read_yaml_text(text, "a.yaml")); }
-std::string error_of(const std::string& text) {
+std::string refusal_of(const std::string& text) {
   return message_of([&] { read(text); });
 }
 
@@ -82,32 +82,34 @@ TEST(Table, ValuesArriveInTheirMembersAndTheRestIsAsItWas) {
 
 TEST(Table, UnknownKeyIsAnsweredWithTheKeysAndTheNearest) {
   EXPECT_EQ(
-      error_of("size_m: 1\nshaer: 1\n"),
+      refusal_of("size_m: 1\nshaer: 1\n"),
       "a.yaml:2: shaer is '1', rule: key 'shaer' is not known here; keys are big, count, kind, list, share, "
       "size_m, turn_deg; did you mean 'share'");
-  EXPECT_THAT(error_of("size_m: 1\nwings: 1\n"), ::testing::EndsWith("size_m, turn_deg"));
+  EXPECT_THAT(refusal_of("size_m: 1\nwings: 1\n"), ::testing::EndsWith("size_m, turn_deg"));
 }
 
 TEST(Table, MisspeltKeyThatIsRequiredIsNamedWhereItStands) {
-  EXPECT_THAT(error_of("share: 1\nsise_m: 1\n"), HasSubstr("a.yaml:2: sise_m is '1'"));
-  EXPECT_THAT(error_of("share: 1\n"), HasSubstr("a.yaml:1: the file is a map, rule: has the key 'size_m'"));
+  EXPECT_THAT(refusal_of("share: 1\nsise_m: 1\n"), HasSubstr("a.yaml:2: sise_m is '1'"));
+  EXPECT_THAT(refusal_of("share: 1\n"), HasSubstr("a.yaml:1: the file is a map, rule: has the key 'size_m'"));
 }
 
 TEST(Table, KeyOfABranchIsKnownWhileItHolds) {
   EXPECT_EQ(read("size_m: 1\nkind: striped\nstripes: 2\n").stripes, 2);
-  EXPECT_THAT(error_of("size_m: 1\nstripes: 2\n"),
+  EXPECT_THAT(refusal_of("size_m: 1\nstripes: 2\n"),
               HasSubstr("a.yaml:2: stripes is '2', rule: key 'stripes' is not known"));
-  EXPECT_THAT(error_of("size_m: 1\nstripes: 2\n"), HasSubstr("; stripes goes with kind striped"));
-  EXPECT_THAT(error_of("size_m: 1\nkind: stripd\nstripes: 2\n"),
+  EXPECT_THAT(refusal_of("size_m: 1\nstripes: 2\n"), HasSubstr("; stripes goes with kind striped"));
+  EXPECT_THAT(refusal_of("size_m: 1\nkind: stripd\nstripes: 2\n"),
               HasSubstr("one of plain, striped; did you mean 'striped'"));
-  EXPECT_THAT(error_of("stripes: 2\n"), HasSubstr("has the key 'size_m'")) << "what is missing comes first";
+  EXPECT_THAT(refusal_of("stripes: 2\n"), HasSubstr("has the key 'size_m'")) << "what is missing comes first";
 }
 
 TEST(Table, CompanyAndRulesAreKept) {
-  EXPECT_THAT(error_of("size_m: 1\nshare: 1\nturn_deg: 1\n"),
+  EXPECT_THAT(refusal_of("size_m: 1\nshare: 1\nturn_deg: 1\n"),
               HasSubstr("a.yaml:3: turn_deg is '1', rule: not together with share"));
-  EXPECT_THAT(error_of("size_m: 1\nbig: true\n"), HasSubstr("big is 'true', rule: only together with share"));
-  EXPECT_THAT(error_of("size_m: 101\nshare: 1\nbig: true\n"), HasSubstr("rule: size_m at most 100 when big"));
+  EXPECT_THAT(refusal_of("size_m: 1\nbig: true\n"),
+              HasSubstr("big is 'true', rule: only together with share"));
+  EXPECT_THAT(refusal_of("size_m: 101\nshare: 1\nbig: true\n"),
+              HasSubstr("rule: size_m at most 100 when big"));
 }
 
 TEST(KeyDocs, ARowSaysValueUnitDefaultAndMeaning) {

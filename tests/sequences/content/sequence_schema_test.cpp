@@ -76,7 +76,7 @@ TEST(SequenceSchema, ShippedSequencesPassBoth) {
 
 // --- A file that has everything ---
 
-const std::vector<std::string> kLines = {
+const std::vector<std::string> kEveryKey = {
     /*1*/ "name: 2001",
     /*2*/ "frames: 48",
     /*3*/ "fps: 29.97",
@@ -121,7 +121,7 @@ const std::vector<std::string> kLines = {
     /*33*/ "compression: {quality: 100}",
     /*34*/ "clip_margin: 0"};
 
-/// A folder with the files that kLines names.
+/// A folder with the files that kEveryKey names.
 class Folder {
  public:
   Folder() {
@@ -131,7 +131,7 @@ class Folder {
     return folder_.write(name, text_of(lines));
   }
   std::string write(const std::string& name, const Fault& fault) const {
-    std::vector<std::string> lines = kLines;
+    std::vector<std::string> lines = kEveryKey;
     lines[fault.line - 1] = fault.text;
     return write(name, lines);
   }
@@ -161,14 +161,14 @@ void expect_refused(const std::vector<std::string>& files, const std::vector<Fau
 
 TEST(SequenceSchema, FileWithEverythingPassesBoth) {
   const Folder folder;
-  const std::string file = folder.write("right.yaml", kLines);
+  const std::string file = folder.write("right.yaml", kEveryKey);
   EXPECT_EQ(verdicts({file})[0], "ok");
   EXPECT_EQ(message_of([&] { read_sequence_file(file); }), "");
 }
 
 TEST(SequenceSchema, VariantMayLeaveOutWhatItsBaseHas) {
   const Folder folder;
-  folder.write("base.yaml", kLines);
+  folder.write("base.yaml", kEveryKey);
   const std::string file =
       folder.write("variant.yaml", std::vector<std::string>{"extends: base.yaml", "fps: 12"});
   EXPECT_EQ(verdicts({file})[0], "ok");
@@ -176,7 +176,7 @@ TEST(SequenceSchema, VariantMayLeaveOutWhatItsBaseHas) {
 }
 
 // One or more for each kind of rule that a table can state.
-const std::vector<Fault> kFaults = {
+const std::vector<Fault> kSchemaFaults = {
     // Keys: unknown, missing, in the wrong company.
     {3, "fsp: 24", "key 'fsp' is not known here"},
     {16, "camera: {fov: 60}", "key 'fov' is not known here"},
@@ -243,11 +243,11 @@ const std::vector<Fault> kFaults = {
 
 TEST(SequenceSchema, WhatIsWrongIsRefusedByBoth) {
   const Folder folder;
-  const std::vector<std::string> files = write_all(folder, kFaults);
-  expect_refused(files, kFaults);
+  const std::vector<std::string> files = write_all(folder, kSchemaFaults);
+  expect_refused(files, kSchemaFaults);
   const std::vector<std::string> found = verdicts(files);
   for (std::size_t i = 0; i < files.size(); ++i)
-    EXPECT_NE(found[i], "ok") << kFaults[i].line << ": " << kFaults[i].text;
+    EXPECT_NE(found[i], "ok") << kSchemaFaults[i].line << ": " << kSchemaFaults[i].text;
 }
 
 TEST(SequenceSchema, FileThatShowsNothingIsRefusedByBoth) {

@@ -24,7 +24,7 @@ using tests::message_of;
 using tests::TemporaryFolder;
 
 /// Line 1 … of a file that is right; tests change one line.
-const std::vector<std::string> kLines = {
+const std::vector<std::string> kShadedLines = {
     /*1*/ "frames: 24",
     /*2*/ "shapes:",
     /*3*/
@@ -53,15 +53,15 @@ const std::vector<std::string> kLines = {
     /*21*/ "  - {name: ball, parts: [ball], fade: 0.85, preferences: {motion_blur: 0.5}}",
     /*22*/ "compression: {quality: 70}"};
 
-Sequence load(const TemporaryFolder& folder, const std::vector<std::string>& lines = kLines) {
+Sequence load_shaded(const TemporaryFolder& folder, const std::vector<std::string>& lines = kShadedLines) {
   for (const char* name : {"/a.png", "/b.png"})
     write_png(folder.path() + name, {2, 1, std::vector<std::uint8_t>(6, name[1] == 'a' ? 200 : 100)});
   return load_sequence(folder.write("test.yaml", tests::text_of(lines)));
 }
 
-Sequence load() {
+Sequence load_shaded() {
   const TemporaryFolder folder;
-  return load(folder);
+  return load_shaded(folder);
 }
 
 const Layer& layer_of(const Sequence& s, const std::string& name) {
@@ -71,7 +71,7 @@ const Layer& layer_of(const Sequence& s, const std::string& name) {
 }
 
 TEST(LoadShading, EveryTermIsALayerWithItsOwnPreferences) {
-  const Sequence s = load();
+  const Sequence s = load_shaded();
   const Layer& floor = layer_of(s, "floor");
   EXPECT_TRUE(floor.factored.shadows && floor.factored.specular && floor.factored.reflection &&
               floor.factored.second_texture);
@@ -97,9 +97,9 @@ TEST(LoadShading, EveryTermIsALayerWithItsOwnPreferences) {
 
 TEST(LoadShading, TermThatIsNotNamedStaysInTheSprite) {
   const TemporaryFolder folder;
-  std::vector<std::string> lines = kLines;
+  std::vector<std::string> lines = kShadedLines;
   for (const int line : {15, 16, 18, 19, 20}) lines[line - 1] = "";
-  const Sequence s = load(folder, lines);
+  const Sequence s = load_shaded(folder, lines);
   ASSERT_EQ(s.layers.layers.size(), 3u);
   const layers::HeldTerms stays{
       .shadows = true, .reflection = false, .specular = true, .second_texture = true};
@@ -108,7 +108,7 @@ TEST(LoadShading, TermThatIsNotNamedStaysInTheSprite) {
 }
 
 TEST(LoadShading, BlendsAndFadesAreKeysOverTime) {
-  const Sequence s = load();
+  const Sequence s = load_shaded();
   const layers::Keys<double>&second = layer_of(s, "floor/texture 2").gain, &first = layer_of(s, "floor").gain;
   EXPECT_EQ(second.times_s, (std::vector{0.0, 0.5}));
   EXPECT_EQ(second.values, (std::vector{0.3, 0.7}));
@@ -121,25 +121,25 @@ TEST(LoadShading, BlendsAndFadesAreKeysOverTime) {
 }
 
 TEST(LoadShading, LayerThatCastsNoShadowIsInNoMap) {
-  const Sequence s = load();
+  const Sequence s = load_shaded();
   const int ball = layer_of(s, "ball").id;
   EXPECT_EQ(layer_of(s, "floor/shadow of lamp").casters, std::vector{ball});
   EXPECT_EQ(s.layers.casting_parts, layer_of(s, "ball").parts);
   // With the floor as a caster the ball receives its shadow too.
   const TemporaryFolder folder;
-  std::vector<std::string> lines = kLines;
+  std::vector<std::string> lines = kShadedLines;
   lines[11] = "    casts_shadows: true";
-  EXPECT_EQ(load(folder, lines).layers.casting_parts.size(), 2u);
+  EXPECT_EQ(load_shaded(folder, lines).layers.casting_parts.size(), 2u);
 }
 
 TEST(LoadShading, MotionBlurIsThatOfTheLayer) {
-  const Sequence s = load();
+  const Sequence s = load_shaded();
   EXPECT_EQ(layer_of(s, "ball").preferences.motion_blur, 0.5);
   EXPECT_EQ(layer_of(s, "floor").preferences.motion_blur, 0);
 }
 
 TEST(LoadMaterial, SecondTextureHighlightAndMirrorArrive) {
-  const Sequence s = load();
+  const Sequence s = load_shaded();
   const layers::Material& floor = s.scene->materials[s.scene->parts[0].material];
   ASSERT_GE(floor.texture2, 0);
   EXPECT_EQ(s.scene->textures[floor.texture].name, "a.png");
@@ -153,15 +153,15 @@ TEST(LoadMaterial, SecondTextureHighlightAndMirrorArrive) {
 
 TEST(LoadMaterial, BlendOfTheMaterialHoldsWhereTheLayerSaysNone) {
   const TemporaryFolder folder;
-  std::vector<std::string> lines = kLines;
+  std::vector<std::string> lines = kShadedLines;
   lines[18] = lines[19] = "";
-  const Sequence s = load(folder, lines);
+  const Sequence s = load_shaded(folder, lines);
   EXPECT_EQ(layer_of(s, "floor").gain.values, (std::vector{double{0.6f}}));
   EXPECT_EQ(layer_of(s, "floor/texture 2").gain.values, (std::vector{double{0.35f}}));
 }
 
 TEST(LoadLights, SpotStandsWhereItIsPutAndShinesWhereItLooks) {
-  const Sequence s = load();
+  const Sequence s = load_shaded();
   ASSERT_EQ(s.scene->lights.size(), 2u);
   const layers::LightState lamp = s.scene->at(0).lights[0];
   EXPECT_EQ(lamp.kind, layers::Light::Kind::Spot);
@@ -173,7 +173,7 @@ TEST(LoadLights, SpotStandsWhereItIsPutAndShinesWhereItLooks) {
 }
 
 TEST(LoadLights, ShadowMapHasItsOptions) {
-  const Sequence s = load();
+  const Sequence s = load_shaded();
   EXPECT_TRUE(s.scene->lights[0].casts_shadow);
   EXPECT_EQ(s.scene->lights[0].shadow, (layers::ShadowMapOptions{512, 2.5f, 3, 4}));
   EXPECT_FALSE(s.scene->lights[1].casts_shadow);
@@ -182,9 +182,9 @@ TEST(LoadLights, ShadowMapHasItsOptions) {
 
 TEST(LoadLights, MapWithoutTexelsCastsNoShadowAndCostsNothing) {
   const TemporaryFolder folder;
-  std::vector<std::string> lines = kLines;
+  std::vector<std::string> lines = kShadedLines;
   lines[6].replace(lines[6].find("512"), 3, "0");
-  const Sequence s = load(folder, lines);
+  const Sequence s = load_shaded(folder, lines);
   EXPECT_TRUE(s.layers.casting_parts.empty());
   for (const Layer& layer : s.layers.layers) EXPECT_NE(layer.kind, LayerKind::Shadow) << layer.name;
   for (const layers::EffectCall& call : layers::effects_called_for(*s.scene, s.layers.layers))
@@ -196,14 +196,15 @@ TEST(LoadLights, MapWithoutTexelsCastsNoShadowAndCostsNothing) {
 
 TEST(LoadLights, NoMoreThanFourCastShadows) {
   const TemporaryFolder folder;
-  std::vector<std::string> lines = kLines;
+  std::vector<std::string> lines = kShadedLines;
   for (int i = 0; i < 4; ++i)
     lines[7] += "\n  - {kind: directional, direction: [0, -1, 0], casts_shadow: true}";
-  EXPECT_THAT(message_of([&] { load(folder, lines); }), HasSubstr("5 lights cast shadows, rule: at most 4"));
+  EXPECT_THAT(message_of([&] { load_shaded(folder, lines); }),
+              HasSubstr("5 lights cast shadows, rule: at most 4"));
 }
 
 TEST(LoadCompression, QualityArrivesAndTheCommandLineOverridesIt) {
-  const Sequence s = load();
+  const Sequence s = load_shaded();
   ASSERT_TRUE(s.compression);
   EXPECT_EQ(s.compression->quality, 70);
   CommandLine line;
@@ -219,17 +220,17 @@ TEST(LoadCompression, QualityArrivesAndTheCommandLineOverridesIt) {
 
 TEST(LoadCompression, WithoutTheKeySpritesAreKeptAsTheyAre) {
   const TemporaryFolder folder;
-  std::vector<std::string> lines = kLines;
+  std::vector<std::string> lines = kShadedLines;
   lines[21] = "";
-  EXPECT_FALSE(load(folder, lines).compression);
+  EXPECT_FALSE(load_shaded(folder, lines).compression);
 }
 
 // --- What is wrong ---
 
 void expect_refused(const std::vector<tests::Fault>& faults) {
-  tests::expect_refused(kLines, faults, [](const std::vector<std::string>& lines) {
+  tests::expect_refused(kShadedLines, faults, [](const std::vector<std::string>& lines) {
     const TemporaryFolder folder;
-    load(folder, lines);
+    load_shaded(folder, lines);
   });
 }
 
@@ -323,10 +324,10 @@ TEST(LoadShading, WhatIsWrongIsRefusedWithItsLine) {
 
 TEST(LoadShading, BlendWithoutATextureLayerIsRefused) {
   const TemporaryFolder folder;
-  std::vector<std::string> lines = kLines;
+  std::vector<std::string> lines = kShadedLines;
   lines[17] = "";
   EXPECT_THAT(
-      message_of([&] { load(folder, lines); }),
+      message_of([&] { load_shaded(folder, lines); }),
       HasSubstr("test.yaml:19: layers[0].shading.first_blend is '0.4', rule: only together with textures"));
 }
 

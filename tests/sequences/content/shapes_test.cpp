@@ -111,7 +111,7 @@ Sequence load(const std::string& shapes) {
   return load_sequence(folder.write("test.yaml", file_with(shapes)));
 }
 
-std::string error_of(const std::string& shapes) {
+std::string shape_error(const std::string& shapes) {
   return message_of([&] { load(shapes); });
 }
 
@@ -144,19 +144,19 @@ TEST(LoadSequence, CarriedShapesMoveWithTheirCarrier) {
 }
 
 TEST(LoadSequence, WrongShapesAreRefusedWithTheirLine) {
-  EXPECT_THAT(error_of("  - {id: a}\n"), HasSubstr("test.yaml:4: shapes[0]"));
-  EXPECT_THAT(error_of("  - {id: a}\n"), HasSubstr("box, sphere, cylinder and plane"));
-  EXPECT_THAT(error_of("  - {id: a, box: [1, 1, 1], sphere: 2}\n"), HasSubstr("not two"));
-  EXPECT_THAT(error_of("  - {id: a, box: [1, 0, 1]}\n"), HasSubstr("every side above 0"));
-  EXPECT_THAT(error_of("  - {id: a, sphere: -1}\n"), HasSubstr("shapes[0].sphere"));
-  EXPECT_THAT(error_of("  - {id: a, sphere: 1, segments: 2}\n"), HasSubstr("segments"));
-  EXPECT_THAT(error_of("  - {id: a, sphere: 1, taper: 0.5}\n"), HasSubstr("only together with cylinder"));
-  EXPECT_THAT(error_of("  - {id: a, sphere: 1, radius: 2}\n"), HasSubstr("radius"));
-  EXPECT_THAT(error_of("  - {id: a, sphere: 1}\n  - {id: a, sphere: 2}\n"),
+  EXPECT_THAT(shape_error("  - {id: a}\n"), HasSubstr("test.yaml:4: shapes[0]"));
+  EXPECT_THAT(shape_error("  - {id: a}\n"), HasSubstr("box, sphere, cylinder and plane"));
+  EXPECT_THAT(shape_error("  - {id: a, box: [1, 1, 1], sphere: 2}\n"), HasSubstr("not two"));
+  EXPECT_THAT(shape_error("  - {id: a, box: [1, 0, 1]}\n"), HasSubstr("every side above 0"));
+  EXPECT_THAT(shape_error("  - {id: a, sphere: -1}\n"), HasSubstr("shapes[0].sphere"));
+  EXPECT_THAT(shape_error("  - {id: a, sphere: 1, segments: 2}\n"), HasSubstr("segments"));
+  EXPECT_THAT(shape_error("  - {id: a, sphere: 1, taper: 0.5}\n"), HasSubstr("only together with cylinder"));
+  EXPECT_THAT(shape_error("  - {id: a, sphere: 1, radius: 2}\n"), HasSubstr("radius"));
+  EXPECT_THAT(shape_error("  - {id: a, sphere: 1}\n  - {id: a, sphere: 2}\n"),
               HasSubstr("test.yaml:5: two shapes are called 'a'"));
-  EXPECT_THAT(error_of("  - {id: a, sphere: 1, carried_by: b}\n  - {id: b, sphere: 2}\n"),
+  EXPECT_THAT(shape_error("  - {id: a, sphere: 1, carried_by: b}\n  - {id: b, sphere: 2}\n"),
               HasSubstr("test.yaml:4: carried_by is 'b'"));
-  EXPECT_THAT(error_of("  - {id: a, sphere: 1, carried_by: a}\n"), HasSubstr("carried_by is 'a'"));
+  EXPECT_THAT(shape_error("  - {id: a, sphere: 1, carried_by: a}\n"), HasSubstr("carried_by is 'a'"));
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ using testing::UnorderedElementsAreArray;
 
 constexpr int kFrames = 6;
 
-const Variant& all_effects() {
+const Variant& six_frames() {
   static const Variant variant = tests::every_effect(kFrames);
   return variant;
 }
@@ -58,9 +58,9 @@ FrameReport frame_of(const Variant& variant, int frame) {
 class WithoutEffect : public testing::TestWithParam<Effect> {};
 
 TEST_P(WithoutEffect, IsNotCalledForAnyMore) {
-  const layers::EffectCall with = effect_call(all_effects(), GetParam());
+  const layers::EffectCall with = effect_call(six_frames(), GetParam());
   ASSERT_TRUE(with.called) << "the scene must call for all: " << with.why;
-  const layers::EffectCall without = effect_call(without_effect(all_effects(), GetParam()), GetParam());
+  const layers::EffectCall without = effect_call(without_effect(six_frames(), GetParam()), GetParam());
   EXPECT_FALSE(without.called) << without.why;
   EXPECT_FALSE(without.why.empty());
   EXPECT_THAT(without.layers, IsEmpty());
@@ -84,12 +84,12 @@ TEST_P(WithoutEffect, NothingElseGoesThanTheHeaderSays) {
   std::set<Effect> expected = {GetParam()};
   if (const auto found = also.find(GetParam()); found != also.end())
     expected.insert(found->second.begin(), found->second.end());
-  EXPECT_THAT(lost(all_effects(), without_effect(all_effects(), GetParam())),
+  EXPECT_THAT(lost(six_frames(), without_effect(six_frames(), GetParam())),
               UnorderedElementsAreArray(expected));
 }
 
 TEST_P(WithoutEffect, LayersAreFactoredAgainAndTheSceneIsSound) {
-  const Variant without = without_effect(all_effects(), GetParam());
+  const Variant without = without_effect(six_frames(), GetParam());
   EXPECT_EQ(layers::first_defect(*without.sequence.scene), "");
   EXPECT_EQ(without.sequence.layers.defect, "");
   for (std::size_t id = 0; id < without.sequence.layers.layers.size(); ++id)
@@ -97,17 +97,17 @@ TEST_P(WithoutEffect, LayersAreFactoredAgainAndTheSceneIsSound) {
 }
 
 TEST_P(WithoutEffect, TakenTwiceIsTakenOnce) {
-  const Variant once = without_effect(all_effects(), GetParam());
+  const Variant once = without_effect(six_frames(), GetParam());
   const Variant twice = without_effect(once, GetParam());
   EXPECT_EQ(twice.sequence.scene, once.sequence.scene) << "nothing is copied where nothing is taken";
   EXPECT_EQ(names_of(twice), names_of(once));
 }
 
 TEST_P(WithoutEffect, DrawsAFrameAndWhatWasGivenStaysAsItWas) {
-  const std::string before = hash_of(frame_of(all_effects(), 0).picture);
-  const FrameReport report = frame_of(without_effect(all_effects(), GetParam()), kFrames - 1);
+  const std::string before = hash_of(frame_of(six_frames(), 0).picture);
+  const FrameReport report = frame_of(without_effect(six_frames(), GetParam()), kFrames - 1);
   EXPECT_EQ(report.picture.width, 96);
-  EXPECT_EQ(hash_of(frame_of(all_effects(), 0).picture), before);
+  EXPECT_EQ(hash_of(frame_of(six_frames(), 0).picture), before);
 }
 
 std::string effect_name(const testing::TestParamInfo<Effect>& info) {
@@ -145,8 +145,8 @@ TEST(WithoutTexture, HolesBecomeMeanOpacityAndColourIsNotDarkened) {
 }
 
 TEST(WithoutSkinning, TheFirstFrameIsThatOfThePose) {
-  const Variant posed = without_effect(all_effects(), Effect::Skinning);
-  const layers::SceneFrame was = all_effects().sequence.scene->at(0), is = posed.sequence.scene->at(0);
+  const Variant posed = without_effect(six_frames(), Effect::Skinning);
+  const layers::SceneFrame was = six_frames().sequence.scene->at(0), is = posed.sequence.scene->at(0);
   const auto expected = layers::world_positions(was, was.scene->parts[2]);
   const auto found = layers::world_positions(is, is.scene->parts[2]);
   ASSERT_EQ(found.size(), expected.size());
@@ -155,20 +155,20 @@ TEST(WithoutSkinning, TheFirstFrameIsThatOfThePose) {
 }
 
 TEST(WithoutSkinning, ThePoseNoLongerBends) {
-  const Variant posed = without_effect(all_effects(), Effect::Skinning);
+  const Variant posed = without_effect(six_frames(), Effect::Skinning);
   const layers::SceneFrame first = posed.sequence.scene->at(0), bent = posed.sequence.scene->at(1);
   EXPECT_EQ(layers::world_positions(first, first.scene->parts[2]),
             layers::world_positions(bent, bent.scene->parts[2]));
 }
 
 TEST(WithoutTranslucency, GlassThatBecomesOpaqueStillCastsNoShadow) {
-  const Variant opaque = without_effect(all_effects(), Effect::Translucency);
-  EXPECT_EQ(opaque.sequence.layers.casting_parts, all_effects().sequence.layers.casting_parts);
+  const Variant opaque = without_effect(six_frames(), Effect::Translucency);
+  EXPECT_EQ(opaque.sequence.layers.casting_parts, six_frames().sequence.layers.casting_parts);
 }
 
 TEST(WithoutVisibilitySort, TheOrderIsThatOfTheFirstFrameAndNothingIsSorted) {
-  const Variant fixed = without_effect(all_effects(), Effect::VisibilitySort);
-  const FrameReport sorted = frame_of(all_effects(), 0), by_group = frame_of(fixed, 0);
+  const Variant fixed = without_effect(six_frames(), Effect::VisibilitySort);
+  const FrameReport sorted = frame_of(six_frames(), 0), by_group = frame_of(fixed, 0);
   EXPECT_TRUE(sorted.order.sorted);
   EXPECT_FALSE(by_group.order.sorted);
   EXPECT_EQ(by_group.order.back_to_front, sorted.order.back_to_front);
@@ -176,29 +176,29 @@ TEST(WithoutVisibilitySort, TheOrderIsThatOfTheFirstFrameAndNothingIsSorted) {
 
 TEST(WithoutShadowLayer, TheShadowStaysInThePicture) {
   // Factored shadows lie before their base; unfactored ones are held by its sprite.
-  const Variant held = without_effect(all_effects(), Effect::ShadowLayer);
+  const Variant held = without_effect(six_frames(), Effect::ShadowLayer);
   for (const layers::Layer& layer : held.sequence.layers.layers) EXPECT_NE(layer.kind, LayerKind::Shadow);
   EXPECT_TRUE(held.sequence.layers.layers[0].holds.shadows);
   EXPECT_GT(frame_of(held, 0).render.shadow_lookups, 0);
 }
 
 TEST(WithoutShadowMap, NothingIsLookedUp) {
-  const FrameReport report = frame_of(without_effect(all_effects(), Effect::ShadowMap), 0);
+  const FrameReport report = frame_of(without_effect(six_frames(), Effect::ShadowMap), 0);
   EXPECT_EQ(report.render.shadow_lookups, 0);
   EXPECT_EQ(report.shade.shadow_maps_drawn, 0);
-  EXPECT_GT(frame_of(all_effects(), 0).render.shadow_lookups, 0);
+  EXPECT_GT(frame_of(six_frames(), 0).render.shadow_lookups, 0);
 }
 
 TEST(WithoutReflectionMap, NothingIsMirrored) {
-  const FrameReport report = frame_of(without_effect(all_effects(), Effect::ReflectionMap), 0);
+  const FrameReport report = frame_of(without_effect(six_frames(), Effect::ReflectionMap), 0);
   EXPECT_EQ(report.render.reflection_lookups, 0);
   EXPECT_EQ(report.shade.reflections_drawn, 0);
-  EXPECT_GT(frame_of(all_effects(), 0).render.reflection_lookups, 0);
+  EXPECT_GT(frame_of(six_frames(), 0).render.reflection_lookups, 0);
 }
 
 TEST(WithoutEffectPairs, OfTheAuthorFollowTheirLayersToNewIds) {
   // Shade layers come between the geometry layers: their ids change when one goes.
-  Variant variant = all_effects();
+  Variant variant = six_frames();
   const auto id_of = [](const Variant& v, const std::string& name) {
     for (const layers::Layer& layer : v.sequence.layers.layers)
       if (layer.name == name) return layer.id;

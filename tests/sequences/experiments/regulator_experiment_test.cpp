@@ -20,14 +20,14 @@ namespace {
 
 using regulator::Policy;
 
-constexpr int kFrames = 24;
+constexpr int kMovingFrames = 24;
 
 const Sequence& moving() {
-  static const Sequence sequence = tests::moving_sequence(kFrames);
+  static const Sequence sequence = tests::moving_sequence(kMovingFrames);
   return sequence;
 }
 
-Settings settings_for(const Sequence& sequence) {
+Settings settings_of(const Sequence& sequence) {
   Settings settings;
   settings.view.display_px = sequence.display_px;
   settings.fps = sequence.fps;
@@ -37,14 +37,14 @@ Settings settings_for(const Sequence& sequence) {
 
 std::vector<SettingResult> measure(const std::vector<RegulatorSetting>& compared,
                                    const ExperimentFrames& frames) {
-  return measure_regulator(moving(), settings_for(moving()), compared, frames, ProgressKind::None);
+  return measure_regulator(moving(), settings_of(moving()), compared, frames, ProgressKind::None);
 }
 
 /// Every setting on every frame, measured once for all tests.
 const std::vector<SettingResult>& everything() {
   static const std::vector<SettingResult> results = [] {
-    const ExperimentFrames all{0, kFrames - 1, 1};
-    const double polygons = reference_polygons_per_frame(moving(), settings_for(moving()), all);
+    const ExperimentFrames all{0, kMovingFrames - 1, 1};
+    const double polygons = reference_polygons_per_frame(moving(), settings_of(moving()), all);
     return measure(regulator_settings({}, polygons), all);
   }();
   return results;
@@ -94,7 +94,7 @@ TEST(MeasureRegulator, TheReferenceIsItsOwnTruth) {
   EXPECT_EQ(reference.quality.flip, 0);
   EXPECT_EQ(reference.popping.rms, 0);
   EXPECT_EQ(reference.popping.elsewhere_rms, 0);
-  EXPECT_EQ(reference.popping.frames, kFrames - 1);
+  EXPECT_EQ(reference.popping.frames, kMovingFrames - 1);
   EXPECT_GT(reference.popping.stepping_share, 0.3) << "it draws everything again, and nothing jumps";
 }
 
@@ -146,14 +146,14 @@ struct SlowRun {
 };
 
 SlowRun slow_run(const regulator::RegulatorOptions& options, const std::set<int>& frames) {
-  Settings settings = settings_for(moving());
+  Settings settings = settings_of(moving());
   settings.regulator = options;
   const Pipeline pipeline = make_pipeline(*moving().scene, moving().layers, settings);
   const chunker::PreparedScene prepared(*moving().scene);
   PipelineState state(pipeline);
   SlowRun run;
   FrameReport before;
-  for (int frame = 0; frame < kFrames; ++frame) {
+  for (int frame = 0; frame < kMovingFrames; ++frame) {
     FrameReport now = step(pipeline, state, frame, &prepared);
     if (frames.count(frame)) {
       const Image8 shown = to_image8(now.picture),
@@ -184,7 +184,8 @@ TEST(MeasureRegulator, SamplingFramesChangesNoPictureAndNoPlan) {
   std::vector<RegulatorSetting> compared{everything().front().setting};
   for (const char* series : {"hold", "threshold", "lookahead 16", "oracle", "budget"})
     compared.push_back(std::next(by_knob(series).begin())->second.setting);
-  for (const ExperimentFrames& frames : {ExperimentFrames{0, kFrames - 1, 5}, ExperimentFrames{7, 18, 3}}) {
+  for (const ExperimentFrames& frames :
+       {ExperimentFrames{0, kMovingFrames - 1, 5}, ExperimentFrames{7, 18, 3}}) {
     const std::vector<int> sampled = sampled_frames(frames);
     const std::vector<SettingResult> results = measure(compared, frames);
     for (std::size_t k = 1; k < results.size(); ++k) {
@@ -210,15 +211,15 @@ TEST(ReferencePolygonsPerFrame, AreThoseOfTheLayersInView) {
   // All three layers of the scene are in view in every frame.
   double polygons = 0;
   for (const layers::Layer& layer : moving().layers.layers) polygons += layer.polygons;
-  EXPECT_DOUBLE_EQ(reference_polygons_per_frame(moving(), settings_for(moving()), {3, 9, 2}), polygons);
+  EXPECT_DOUBLE_EQ(reference_polygons_per_frame(moving(), settings_of(moving()), {3, 9, 2}), polygons);
 }
 
 // --- Lookahead
 
 TEST(LookaheadCurve, LiesBetweenThresholdAndOracle) {
-  Settings settings = settings_for(moving());
+  Settings settings = settings_of(moving());
   settings.regulator.thresholds.geometric_px = 1;
-  const LookaheadCurve curve = lookahead_curve(moving(), settings, {0, kFrames - 1, 1});
+  const LookaheadCurve curve = lookahead_curve(moving(), settings, {0, kMovingFrames - 1, 1});
   const std::size_t lookaheads = compared_lookaheads().size();
   ASSERT_EQ(curve.points.size(), 2 * lookaheads) << "known and predicted";
   EXPECT_EQ(curve.points.front().frames, 0);

@@ -23,7 +23,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using warp::Curve;
 
-constexpr int kFrames = 60;
+constexpr int kAnimationFrames = 60;
 
 const WarpObject& object(const std::string& name) {
   static std::map<std::string, WarpObject> loaded;
@@ -31,7 +31,8 @@ const WarpObject& object(const std::string& name) {
   return loaded.at(name);
 }
 
-CapturedAnimation animation_of(const std::string& name, const WarpMotion& motion, int frames = kFrames) {
+CapturedAnimation animation_of(const std::string& name, const WarpMotion& motion,
+                               int frames = kAnimationFrames) {
   // Six seconds apart in all: the object turns and travels far enough to be drawn again at every threshold.
   return capture_animation(stage(object(name), motion), frames, 10, {}, layers::BoundKind::Box8);
 }

@@ -25,7 +25,7 @@ using ::testing::SizeIs;
 using tests::message_of;
 using tests::TemporaryFolder;
 
-std::string square_obj() {
+std::string textured_square_obj() {
   return "mtllib square.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
          "o square\nusemtl paint\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n";
 }
@@ -47,7 +47,7 @@ class ModelCacheTest : public testing::Test {
  protected:
   ModelCacheTest() {
     use_cache({cache_.path(), 64});
-    model_ = folder_.write("models/square.obj", square_obj());
+    model_ = folder_.write("models/square.obj", textured_square_obj());
     folder_.write("models/square.mtl", square_mtl("paint.ppm"));
     folder_.write("models/paint.ppm", grey_ppm('a'));
   }
@@ -139,7 +139,7 @@ TEST_F(ModelCacheTest, TextureThatWasMissingAppears) {
 
 TEST_F(ModelCacheTest, TheSameModelElsewhereHasItsOwnTextures) {
   EXPECT_EQ(grey_of(read()), 'a');
-  const std::string copy = folder_.write("copies/square.obj", square_obj());
+  const std::string copy = folder_.write("copies/square.obj", textured_square_obj());
   folder_.write("copies/square.mtl", square_mtl("paint.ppm"));
   folder_.write("copies/paint.ppm", grey_ppm('g'));
   EXPECT_EQ(grey_of(read(copy)), 'g');
@@ -147,11 +147,11 @@ TEST_F(ModelCacheTest, TheSameModelElsewhereHasItsOwnTextures) {
 
 TEST_F(ModelCacheTest, EditedModelIsReadAnewAndTheOldOneIsStillKnown) {
   const auto before = bytes(read());
-  folder_.write("models/square.obj", square_obj() + "f 1/1 2/2 4/4\n");
+  folder_.write("models/square.obj", textured_square_obj() + "f 1/1 2/2 4/4\n");
   const ImportedModel edited = read();
   EXPECT_TRUE(reader_ran_);
   EXPECT_NE(bytes(edited), before);
-  folder_.write("models/square.obj", square_obj());
+  folder_.write("models/square.obj", textured_square_obj());
   EXPECT_EQ(bytes(read()), before);
   EXPECT_FALSE(reader_ran_);
 }

@@ -20,7 +20,7 @@ Image8 blank(int width, int height) {
   return image;
 }
 
-Rgb at(const Image8& image, int x, int y) {
+Rgb pixel_at(const Image8& image, int x, int y) {
   const auto* p = image.rgb.data() + (static_cast<std::size_t>(y) * image.width + x) * 3;
   return {p[0], p[1], p[2]};
 }
@@ -28,7 +28,7 @@ Rgb at(const Image8& image, int x, int y) {
 int changed_pixels(const Image8& image) {
   int n = 0;
   for (int y = 0; y < image.height; ++y)
-    for (int x = 0; x < image.width; ++x) n += at(image, x, y) != kGround;
+    for (int x = 0; x < image.width; ++x) n += pixel_at(image, x, y) != kGround;
   return n;
 }
 
@@ -61,16 +61,16 @@ TEST(AgeColor, FreshIsWhiteThenGreenYellowRed) {
 /// How much of a white line a row of pixels shows, in pixels.
 double white_in_row(const Image8& image, int y, int first, int last) {
   double sum = 0;
-  for (int x = first; x <= last; ++x) sum += (at(image, x, y)[0] - kGround[0]) / (255.0 - kGround[0]);
+  for (int x = first; x <= last; ++x) sum += (pixel_at(image, x, y)[0] - kGround[0]) / (255.0 - kGround[0]);
   return sum;
 }
 
 // An edge at x = 50 is bright in the two columns beside it, and gone three pixels away.
 TEST(DrawOutlines, EdgeCoversThePixelsBesideIt) {
   const Image8 image = drawn({shift(50, 40), {60, 30}, 0, ""});
-  for (const int x : {49, 50}) EXPECT_GT(at(image, x, 55)[0], 200) << x;
-  for (const int y : {39, 40, 69, 70}) EXPECT_GT(at(image, 80, y)[0], 200) << y;
-  for (const int x : {46, 53, 80}) EXPECT_EQ(at(image, x, 55), kGround) << x;
+  for (const int x : {49, 50}) EXPECT_GT(pixel_at(image, x, 55)[0], 200) << x;
+  for (const int y : {39, 40, 69, 70}) EXPECT_GT(pixel_at(image, 80, y)[0], 200) << y;
+  for (const int x : {46, 53, 80}) EXPECT_EQ(pixel_at(image, x, 55), kGround) << x;
   EXPECT_NEAR(white_in_row(image, 55, 40, 60), 3.4, 0.25);
 }
 
@@ -105,7 +105,7 @@ TEST(DrawOutlines, RandomAffineOutlinesLieOnTheirEdges) {
         const auto p = m * layers::dvec3(corners[e][0] * (1 - t) + corners[e + 1][0] * t,
                                          corners[e][1] * (1 - t) + corners[e + 1][1] * t, 1);
         if (p.x < 0 || p.y < 0 || p.x >= image.width || p.y >= image.height) continue;
-        ASSERT_GT(at(image, static_cast<int>(p.x), static_cast<int>(p.y))[0], 120)
+        ASSERT_GT(pixel_at(image, static_cast<int>(p.x), static_cast<int>(p.y))[0], 120)
             << "seed " << kSeed << " trial " << trial;
       }
   }
@@ -119,7 +119,7 @@ TEST(DrawOutlines, EdgesBehindTheViewerAreCut) {
   EXPECT_GT(changed_pixels(image), 50);
   for (int y = 0; y < image.height; ++y)
     for (int x = 0; x < 55; ++x)
-      ASSERT_EQ(at(image, x, y), kGround) << x << ", " << y;  // all is right of x = 60
+      ASSERT_EQ(pixel_at(image, x, y), kGround) << x << ", " << y;  // all is right of x = 60
 }
 
 TEST(DrawOutlines, WhollyBehindTheViewerDrawsNothing) {
@@ -145,10 +145,10 @@ TEST(DrawOutlines, DegenerateAndNotFiniteMapsAreHarmless) {
 TEST(DrawOutlines, HugeCoordinatesAreClippedExactly) {
   const Image8 image = drawn({matrix(1e9, 0, 100, 0, 1e9, -5e9), {10, 10}, 0, ""});
   for (int y = 0; y < image.height; ++y) {
-    EXPECT_GT(at(image, 99, y)[0], 200);
-    EXPECT_GT(at(image, 100, y)[0], 200);
-    EXPECT_EQ(at(image, 96, y), kGround);
-    EXPECT_EQ(at(image, 103, y), kGround);
+    EXPECT_GT(pixel_at(image, 99, y)[0], 200);
+    EXPECT_GT(pixel_at(image, 100, y)[0], 200);
+    EXPECT_EQ(pixel_at(image, 96, y), kGround);
+    EXPECT_EQ(pixel_at(image, 103, y), kGround);
   }
 }
 
@@ -181,7 +181,7 @@ TEST(DrawOutlines, LabelsStayInView) {
 // Wider than the picture: shown from its beginning, cut at the end.
 TEST(DrawOutlines, LabelWiderThanThePictureIsCut) {
   const Image8 image = drawn({shift(10, 10), {20, 20}, 0, std::string(100, 'M')}, 60, 40);
-  EXPECT_NE(at(image, 1, 13), kGround);
+  EXPECT_NE(pixel_at(image, 1, 13), kGround);
 }
 
 // Many layers at rest share one corner; their labels must not hide each other.

@@ -47,7 +47,7 @@ const std::string kLampAndWall =
     "layers:\n"
     "  - {name: wall, parts: [wall], shading: {shadows: {}, specular: {}}}\n"
     "  - {name: ball, parts: [ball]}\n";
-constexpr int kWall = 0, kShadow = 1, kSpecular = 2, kBall = 3, kBoth = 4;
+constexpr int kShadedWall = 0, kShadow = 1, kSpecular = 2, kShadedBall = 3, kShadedBoth = 4;
 
 /// `text` with `from` replaced, which must be there.
 std::string with(std::string text, const std::string& from, const std::string& to) {
@@ -61,7 +61,7 @@ Sequence sequence_of(const std::string& text) {
 }
 
 /// Sprites lie on the lattice of the pixels, so that nothing is resampled.
-Settings settings_of(const Sequence& sequence, Policy policy, double geometric_px = 1) {
+Settings shaded_settings(const Sequence& sequence, Policy policy, double geometric_px = 1) {
   Settings settings = resolve({}, sequence, true).settings;
   settings.regulator.policy = policy;
   settings.regulator.thresholds.geometric_px = geometric_px;
@@ -76,25 +76,25 @@ TEST(AggregateShades, TermsAreDroppedWithAReasonWhileTheirBaseIsMerged) {
   ASSERT_EQ(s.layers.layers.size(), 4u);
   ASSERT_EQ(s.layers.layers[kShadow].name, "wall/shadow of lamp");
   ASSERT_EQ(s.layers.layers[kSpecular].name, "wall/specular");
-  Playback run(s, settings_of(s, Policy::Threshold));
+  Playback run(s, shaded_settings(s, Policy::Threshold));
   int merged_frames = 0, splits = 0;
   while (run.frame < 16) {
     const FrameReport report = run.next();
     const auto& decisions = report.plan.decisions;
     const auto& order = report.order.back_to_front;
-    const auto base = std::find(order.begin(), order.end(), kWall);
+    const auto base = std::find(order.begin(), order.end(), kShadedWall);
     for (const int term : {kShadow, kSpecular}) {
       SCOPED_TRACE(s.layers.layers[term].name + " in frame " + std::to_string(report.frame));
       const bool shown = std::any_of(report.shown.begin(), report.shown.end(),
                                      [&](const ShownSprite& sprite) { return sprite.layer == term; });
       EXPECT_EQ(decisions[term].action == Action::Drop, is_merged(report));
-      EXPECT_EQ(report.order.merged_into[term], report.order.merged_into[kWall]);
+      EXPECT_EQ(report.order.merged_into[term], report.order.merged_into[kShadedWall]);
       EXPECT_EQ(shown, !is_merged(report));
       if (is_merged(report)) {
         EXPECT_THAT(decisions[term].reason, StartsWith("merged into wall+ball: "));
       } else {
         ASSERT_GT(order.end() - base, 2);
-        EXPECT_EQ(*(base + (term - kWall)), term) << "directly in front of its base";
+        EXPECT_EQ(*(base + (term - kShadedWall)), term) << "directly in front of its base";
       }
     }
     splits += decisions[kShadow].reason.rfind("split from wall+ball: ", 0) == 0;
@@ -107,16 +107,16 @@ TEST(AggregateShades, TermsAreDroppedWithAReasonWhileTheirBaseIsMerged) {
 
 TEST(AggregateShades, AggregateHoldsTheTermsOfItsMembers) {
   const Sequence s = sequence_of(kLampAndWall);
-  ASSERT_FALSE(s.layers.layers[kWall].holds.shadows || s.layers.layers[kWall].holds.specular);
-  Playback run(s, settings_of(s, Policy::Threshold));
+  ASSERT_FALSE(s.layers.layers[kShadedWall].holds.shadows || s.layers.layers[kShadedWall].holds.specular);
+  Playback run(s, shaded_settings(s, Policy::Threshold));
   while (run.frame < 8) run.next();
   ASSERT_EQ(run.state.layers.size(), 5u);
-  const Layer& both = run.state.layers[kBoth];
-  EXPECT_EQ(both.members, (std::vector{kWall, kBall})) << "terms are no members";
+  const Layer& both = run.state.layers[kShadedBoth];
+  EXPECT_EQ(both.members, (std::vector{kShadedWall, kShadedBall})) << "terms are no members";
   EXPECT_EQ(both.parts.size(), 2u) << "the surface of the wall is drawn once, not once per term";
   EXPECT_EQ(both.holds, (layers::HeldTerms{.shadows = true, .specular = true}));
-  EXPECT_EQ(both.casters, (std::vector{kWall, kBall}));
-  EXPECT_EQ(both.polygons, s.layers.layers[kWall].polygons + s.layers.layers[kBall].polygons);
+  EXPECT_EQ(both.casters, (std::vector{kShadedWall, kShadedBall}));
+  EXPECT_EQ(both.polygons, s.layers.layers[kShadedWall].polygons + s.layers.layers[kShadedBall].polygons);
 }
 
 TEST(AggregateShades, FadeThatAllMembersShareGoesOn) {
@@ -126,12 +126,12 @@ TEST(AggregateShades, FadeThatAllMembersShareGoesOn) {
   const std::string all = with(one, "specular: {}}}", "specular: {}}" + fade);
   for (const bool common : {true, false}) {
     const Sequence s = sequence_of(common ? all : one);
-    Playback run(s, settings_of(s, Policy::Threshold));
+    Playback run(s, shaded_settings(s, Policy::Threshold));
     int merged_frames = 0;
     while (run.frame < 12) {
       const FrameReport report = run.next();
       for (const ShownSprite& sprite : report.shown) {
-        if (sprite.layer != kBoth) continue;
+        if (sprite.layer != kShadedBoth) continue;
         ++merged_frames;
         EXPECT_FLOAT_EQ(sprite.multipliers.alpha, common ? 1 - report.frame / 16.0f : 1.0f) << report.frame;
       }
@@ -165,8 +165,9 @@ int difference(const Image8& a, const Image8& b, int pixel) {
 /// that no sprite covers in part. `without` is the same scene without the term that is to be seen in the
 /// aggregate.
 void expect_merged_frames_equal_one_pass(const Sequence& s, const Sequence& without) {
-  Playback run(s, settings_of(s, Policy::Reference), true);
-  const Pipeline plain = make_pipeline(*without.scene, without.layers, settings_of(without, Policy::Direct));
+  Playback run(s, shaded_settings(s, Policy::Reference), true);
+  const Pipeline plain =
+      make_pipeline(*without.scene, without.layers, shaded_settings(without, Policy::Direct));
   const chunker::PreparedScene plain_scene(*without.scene);
   long compared = 0, wrong = 0, of_the_term = 0;
   int largest = 0;
@@ -232,8 +233,8 @@ TEST(AggregateShades, ReflectionInAnAggregateIsThatOfOnePass) {
 
 TEST(AggregateShades, ThresholdZeroEqualsReferenceByteForByte) {
   const Sequence s = sequence_of(kLampAndWall);
-  Playback zero(s, settings_of(s, Policy::Threshold, 0), true),
-      all(s, settings_of(s, Policy::Reference), true);
+  Playback zero(s, shaded_settings(s, Policy::Threshold, 0), true),
+      all(s, shaded_settings(s, Policy::Reference), true);
   int merged_frames = 0;
   while (all.frame < 14) {
     const FrameReport a = zero.next(), b = all.next();
@@ -245,7 +246,8 @@ TEST(AggregateShades, ThresholdZeroEqualsReferenceByteForByte) {
 
 TEST(AggregateShades, PlanWithoutPixelsMakesTheSameDecisionsAndPasses) {
   const Sequence s = sequence_of(kLampAndWall);
-  Playback planned(s, settings_of(s, Policy::Threshold)), drawn(s, settings_of(s, Policy::Threshold), true);
+  Playback planned(s, shaded_settings(s, Policy::Threshold)),
+      drawn(s, shaded_settings(s, Policy::Threshold), true);
   while (drawn.frame < 14) {
     const FrameReport a = planned.next(), b = drawn.next();
     EXPECT_EQ(a.shade, b.shade) << a.frame;
@@ -293,8 +295,8 @@ constexpr int kSquares = 2;
 
 TEST(AggregateLight, ThatDimsIsFollowedWithoutRenders) {
   const Sequence s = crossed_squares_at_dusk();
-  Playback warped(s, settings_of(s, Policy::Threshold), true),
-      truth(s, settings_of(s, Policy::Reference), true);
+  Playback warped(s, shaded_settings(s, Policy::Threshold), true),
+      truth(s, shaded_settings(s, Policy::Reference), true);
   int renders = 0;
   while (warped.frame < s.frames) {
     const FrameReport a = warped.next(), b = truth.next();
@@ -313,7 +315,7 @@ TEST(AggregateLight, ThatDimsIsFollowedWithoutRenders) {
 
 TEST(AggregateLight, WithoutColourWarpTheLightIsTheReasonToDrawAgain) {
   const Sequence s = crossed_squares_at_dusk();
-  Settings settings = settings_of(s, Policy::Threshold);
+  Settings settings = shaded_settings(s, Policy::Threshold);
   settings.regulator.color_warp = false;
   Playback run(s, settings);
   int renders = 0, named = 0;

@@ -21,7 +21,7 @@ using layers::dvec2;
 using layers::dvec3;
 using regulator::Policy;
 
-Settings settings_of(const Sequence& sequence, Policy policy) {
+Settings carousel_settings(const Sequence& sequence, Policy policy) {
   Settings settings = resolve({}, sequence, true).settings;
   settings.regulator.policy = policy;
   settings.view.display_px = {160, 120};
@@ -30,16 +30,16 @@ Settings settings_of(const Sequence& sequence, Policy policy) {
 }
 
 /// The alpha of a shown sprite at a pixel, 0 … 255; sprites lie on the lattice of the pixels.
-int alpha_at(const ShownSprite& shown, const chunker::SpriteStore& sprites, int x, int y) {
+int texel_alpha(const ShownSprite& shown, const chunker::SpriteStore& sprites, int x, int y) {
   const chunker::Sprite* sprite = sprites.find(shown.layer);
   const int column = x - static_cast<int>(std::lround(shown.screen_from_sprite[2].x));
   const int row = y - static_cast<int>(std::lround(shown.screen_from_sprite[2].y));
   return sprite->texel(column, row).a;
 }
 
-bool is_covered_in_part(const FrameReport& report, const chunker::SpriteStore& sprites, int x, int y) {
+bool is_partly_covered(const FrameReport& report, const chunker::SpriteStore& sprites, int x, int y) {
   for (const ShownSprite& shown : report.shown) {
-    const int alpha = alpha_at(shown, sprites, x, y);
+    const int alpha = texel_alpha(shown, sprites, x, y);
     if (alpha > 0 && alpha < 255) return true;
   }
   return false;
@@ -48,7 +48,7 @@ bool is_covered_in_part(const FrameReport& report, const chunker::SpriteStore& s
 /// The shown layer that hides all others at a pixel covered in full; -1: background.
 int front_layer(const FrameReport& report, const chunker::SpriteStore& sprites, int x, int y) {
   for (auto shown = report.shown.rbegin(); shown != report.shown.rend(); ++shown)
-    if (alpha_at(*shown, sprites, x, y) == 255) return shown->layer;
+    if (texel_alpha(*shown, sprites, x, y) == 255) return shown->layer;
   return -1;
 }
 
@@ -56,7 +56,7 @@ int front_layer(const FrameReport& report, const chunker::SpriteStore& sprites, 
 std::string layers_at(const FrameReport& report, const PipelineState& state, int x, int y) {
   std::string text;
   for (const ShownSprite& shown : report.shown)
-    if (alpha_at(shown, state.sprites, x, y) > 0) text += report.layers[shown.layer].name + ", ";
+    if (texel_alpha(shown, state.sprites, x, y) > 0) text += report.layers[shown.layer].name + ", ";
   return text;
 }
 
@@ -91,7 +91,7 @@ AgainstOnePass against_one_pass(const Sequence& s, const Settings& settings, int
     for (int y = 0; y < shown.height; ++y)
       for (int x = 0; x < shown.width; ++x) {
         const int d = difference(shown, direct, static_cast<std::size_t>(y) * shown.width + x);
-        if (is_covered_in_part(report, state.sprites, x, y)) {
+        if (is_partly_covered(report, state.sprites, x, y)) {
           ++in_part;
           in_part_differ += d > 1;
           largest_in_part = std::max(largest_in_part, d);
@@ -116,7 +116,7 @@ AgainstOnePass against_one_pass(const Sequence& s, const Settings& settings, int
 
 TEST(Carousel, LayersEqualOnePassExceptWherePixelsAreCoveredInPart) {
   const Sequence s = load_sequence("carousel");
-  const AgainstOnePass result = against_one_pass(s, settings_of(s, Policy::Reference), 1);
+  const AgainstOnePass result = against_one_pass(s, carousel_settings(s, Policy::Reference), 1);
   EXPECT_EQ(result.wrong, 0);
   EXPECT_GT(result.in_full, 10 * result.in_part);
   EXPECT_GT(result.merged_frames, 20);
@@ -127,7 +127,7 @@ TEST(Carousel, LayersEqualOnePassExceptWherePixelsAreCoveredInPart) {
 TEST(Carousel, ExpressionsEqualOnePassAsMergingDoes) {
   // The planks go round in most frames and are never merged; ball and wall, which meet, are.
   const Sequence s = load_sequence("carousel");
-  Settings settings = settings_of(s, Policy::Reference);
+  Settings settings = carousel_settings(s, Policy::Reference);
   settings.compositor = Compositor::Extended;
   const AgainstOnePass result = against_one_pass(s, settings, 3);
   EXPECT_EQ(result.wrong, 0);
@@ -141,7 +141,7 @@ TEST(Carousel, ExpressionsEqualOnePassAsMergingDoes) {
 TEST(Carousel, ExpressionsSavePolygonsThatMergingDraws) {
   const Sequence s = load_sequence("carousel");
   const auto polygons = [&](Compositor compositor) {
-    Settings settings = settings_of(s, Policy::Threshold);
+    Settings settings = carousel_settings(s, Policy::Threshold);
     settings.compositor = compositor;
     const Pipeline pipeline = make_pipeline(*s.scene, s.layers, settings);
     PipelineState state(pipeline);
@@ -219,7 +219,7 @@ TEST(Carousel, RaysThroughPixelsMeetTheLayerThatIsInFront) {
   // Independent of renderer and compositor: which part does the eye meet first? It must be drawn by the layer
   // that is shown in front, at every pixel that no layer covers in part.
   const Sequence s = load_sequence("carousel");
-  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, settings_of(s, Policy::Reference));
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, carousel_settings(s, Policy::Reference));
   const chunker::PreparedScene prepared(*s.scene);
   PipelineState state(pipeline);
   long checked = 0, wrong = 0;
@@ -233,7 +233,7 @@ TEST(Carousel, RaysThroughPixelsMeetTheLayerThatIsInFront) {
     const dvec3 eye(now.camera.world_from_camera[3]);
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {
-        if (is_covered_in_part(report, state.sprites, x, y)) continue;
+        if (is_partly_covered(report, state.sprites, x, y)) continue;
         ++checked;
         const int layer = front_layer(report, state.sprites, x, y);
         const int part = nearest_part(bodies, eye, ray_through(now.camera, size, x + 0.5, y + 0.5));
@@ -253,8 +253,8 @@ TEST(Carousel, RaysThroughPixelsMeetTheLayerThatIsInFront) {
 
 TEST(Carousel, ThresholdShowsTheOrderOfTheReferenceWithinItsBound) {
   const Sequence s = load_sequence("carousel");
-  const Pipeline exact = make_pipeline(*s.scene, s.layers, settings_of(s, Policy::Reference));
-  const Pipeline thrifty = make_pipeline(*s.scene, s.layers, settings_of(s, Policy::Threshold));
+  const Pipeline exact = make_pipeline(*s.scene, s.layers, carousel_settings(s, Policy::Reference));
+  const Pipeline thrifty = make_pipeline(*s.scene, s.layers, carousel_settings(s, Policy::Threshold));
   PipelineState exact_state(exact), thrifty_state(thrifty);
   int renders = 0, renders_of_reference = 0;
   for (int frame = 0; frame < s.frames; ++frame) {
@@ -274,7 +274,7 @@ TEST(Carousel, ThresholdShowsTheOrderOfTheReferenceWithinItsBound) {
 
 TEST(Carousel, PlanksGoRoundUntilOneLeavesAndAgainWhenItIsBack) {
   const Sequence s = load_sequence("carousel");
-  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, settings_of(s, Policy::Reference));
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, carousel_settings(s, Policy::Reference));
   PipelineState state(pipeline);
   std::string history;  // one letter for each frame: are the planks merged?
   for (int frame = 0; frame < s.frames; ++frame) {

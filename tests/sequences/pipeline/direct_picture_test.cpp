@@ -20,7 +20,7 @@ using layers::vec3;
 using testing::ElementsAre;
 using tests::Room;
 
-constexpr layers::ivec2 kDisplay{160, 120};
+constexpr layers::ivec2 kSmallDisplay{160, 120};
 
 /// A room with its layers and pipeline, which keep references to each other.
 struct Show {
@@ -32,7 +32,7 @@ struct Show {
 
   static Settings settings_for(regulator::Policy policy) {
     Settings settings;
-    settings.view.display_px = kDisplay;
+    settings.view.display_px = kSmallDisplay;
     settings.regulator.policy = policy;
     settings.frames = 48;
     return settings;
@@ -111,7 +111,7 @@ TEST(Direct, ShowsEveryMirror) {
 /// The picture in one mirror alone.
 chunker::Sprite mirrored_in(const Show& show, const std::string& name) {
   layers::SpritePlacement placement;
-  placement.size_px = kDisplay;
+  placement.size_px = kSmallDisplay;
   ShadowMapStore maps;
   const chunker::PreparedScene prepared(show.room.scene);
   return draw_layer({show.pipeline, show.pipeline.authored, maps, prepared, show.room.scene.at(0)},
@@ -127,8 +127,8 @@ TEST(Direct, MirrorInAMirrorShowsItsOwnColour) {
   const chunker::Sprite a = mirrored_in(without, "floor/reflection"),
                         b = mirrored_in(with, "floor/reflection");
   int shown = 0;
-  for (int y = 0; y < kDisplay.y; ++y)
-    for (int x = 0; x < kDisplay.x; ++x) {
+  for (int y = 0; y < kSmallDisplay.y; ++y)
+    for (int x = 0; x < kSmallDisplay.x; ++x) {
       ASSERT_EQ(a.texel(x, y), b.texel(x, y)) << x << " " << y;
       shown += a.texel(x, y).b > 20 ? 1 : 0;
     }
@@ -160,9 +160,9 @@ TEST(Direct, MirrorsOnlyWhatIsBeforeTheMirror) {
   const auto reflecting = [](const Room& room) {
     const Show show(room);
     const chunker::Sprite sprite = mirrored_in(show, "floor/reflection");
-    layers::ivec2 lo{kDisplay}, hi{-1, -1};
-    for (int y = 0; y < kDisplay.y; ++y)
-      for (int x = 0; x < kDisplay.x; ++x)
+    layers::ivec2 lo{kSmallDisplay}, hi{-1, -1};
+    for (int y = 0; y < kSmallDisplay.y; ++y)
+      for (int x = 0; x < kSmallDisplay.x; ++x)
         if (sprite.texel(x, y).r > 0) {
           lo = glm::min(lo, layers::ivec2(x, y));
           hi = glm::max(hi, layers::ivec2(x, y));
@@ -176,8 +176,8 @@ TEST(Direct, MirrorsOnlyWhatIsBeforeTheMirror) {
   const Show show(sunken);
   const auto camera = show.room.scene.at(0).camera;
   const auto project = [&](dvec3 p) {
-    const glm::dvec4 c = layers::clip_from_world(camera, kDisplay) * glm::dvec4(p, 1);
-    return layers::dvec2((c.x / c.w + 1) * kDisplay.x / 2, (1 - c.y / c.w) * kDisplay.y / 2);
+    const glm::dvec4 c = layers::clip_from_world(camera, kSmallDisplay) * glm::dvec4(p, 1);
+    return layers::dvec2((c.x / c.w + 1) * kSmallDisplay.x / 2, (1 - c.y / c.w) * kSmallDisplay.y / 2);
   };
   EXPECT_NEAR(lo.x, project({-0.458, 0, 0}).x, 1.5);
   EXPECT_NEAR(hi.x + 1, project({0.458, 0, 0}).x, 1.5);
@@ -208,7 +208,7 @@ TEST(Direct, FadedLayerIsOneGroup) {
   // Where the first ball covers whole pixels: where the unfaded picture differs from the floor alone, less a
   // border. Its centre is at (80, 46), its radius eight pixels.
   const auto centre = [](const chunker::Frame& f, int dx) {
-    return f.pixels[static_cast<std::size_t>(46) * kDisplay.x + 80 + dx];
+    return f.pixels[static_cast<std::size_t>(46) * kSmallDisplay.x + 80 + dx];
   };
   for (int dx = -4; dx <= 4; ++dx) EXPECT_EQ(centre(a, dx), centre(b, dx)) << dx;
   EXPECT_FALSE(centre(a, 0) == centre(opaque, 0));

@@ -23,7 +23,7 @@ using regulator::Action;
 using regulator::Policy;
 using ::testing::HasSubstr;
 
-constexpr int kFrames = 24;
+constexpr int kLitFrames = 24;
 
 /// A checkered square that faces the camera, lit by one sun that goes around it so that the light on it falls
 /// (or grows) linearly from frame to frame; all its points always have one light.
@@ -38,9 +38,9 @@ struct Dimming {
     scene.nodes.back().name = "sun";
     const int node = static_cast<int>(scene.nodes.size()) - 1;
     layers::TransformTrack track;
-    for (int frame = 0; frame < kFrames; ++frame) {
+    for (int frame = 0; frame < kLitFrames; ++frame) {
       track.rotation.times_s.push_back(frame / settings.fps);
-      const double level = from + (to - from) * frame / (kFrames - 1);
+      const double level = from + (to - from) * frame / (kLitFrames - 1);
       track.rotation.values.push_back(glm::angleAxis(std::acos(level), dvec3(0, 1, 0)));
     }
     scene.tracks.push_back({node, track});
@@ -51,7 +51,7 @@ struct Dimming {
     scene.lights.push_back(sun);
     layers = layers::factor(scene, tests::one_layer_per_part(scene));
     settings.view.display_px = {160, 120};
-    settings.frames = kFrames;
+    settings.frames = kLitFrames;
   }
 
   std::vector<FrameReport> run(Policy policy, bool draw = true) const {
@@ -61,7 +61,7 @@ struct Dimming {
     const chunker::PreparedScene prepared(scene);
     PipelineState state(pipeline);
     std::vector<FrameReport> reports;
-    for (int frame = 0; frame < kFrames; ++frame)
+    for (int frame = 0; frame < kLitFrames; ++frame)
       reports.push_back(step(pipeline, state, frame, draw ? &prepared : nullptr));
     return reports;
   }
@@ -91,7 +91,7 @@ TEST(ColorWarp, ALightThatDimsIsFollowedWithoutRenders) {
   const auto warped = stage.run(Policy::Threshold);
   EXPECT_EQ(renders(warped), 1);
   for (const FrameReport& report : warped) {
-    const double level = 1 - 0.7 * report.frame / (kFrames - 1);
+    const double level = 1 - 0.7 * report.frame / (kLitFrames - 1);
     EXPECT_NEAR(report.plan.decisions[0].shown_color.x, level, 1e-6) << report.frame;
   }
   // A sprite's texel is an 8-bit square root: half a step, here and in the truth.
@@ -105,7 +105,7 @@ TEST(ColorWarp, WithoutItTheSameAccuracyCostsRenders) {
   stage.settings.regulator.color_warp = false;
   const auto without = stage.run(Policy::Threshold);
   EXPECT_GT(renders(without), 4);
-  EXPECT_LT(renders(without), kFrames);
+  EXPECT_LT(renders(without), kLitFrames);
   for (const FrameReport& report : without)
     EXPECT_EQ(report.plan.decisions[0].shown_color, dvec3(1, 1, 1)) << report.frame;
   stage.settings.regulator.thresholds.photometric = 0;

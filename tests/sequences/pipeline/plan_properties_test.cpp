@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // What must hold of whole plans, on random fleets of layers.
 #include <cmath>
+#include <map>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -19,9 +21,9 @@ using regulator::Policy;
 using regulator::RegulatorOptions;
 
 constexpr unsigned kSeeds[] = {1, 2, 3};
-constexpr int kFrames = 64;
+constexpr int kPlannedFrames = 64;
 
-SmallRun fleet(int layers, unsigned seed, const RegulatorOptions& options) {
+SmallRun small_fleet(int layers, unsigned seed, const RegulatorOptions& options) {
   SmallRun small(tests::fleet_scene(layers, seed));
   small.settings.view.display_px = {320, 240};
   small.settings.fps = 32;
@@ -64,7 +66,7 @@ TEST(PlanBudget, NeverSpendsMoreThanAnyOfItsBudgetsExceptOnFirstAppearances) {
           within(kNoLimit, kNoLimit, kNoLimit, 0.05), within(48, 2500, 4, 0.04), within(0, 0, 0, 0)}) {
       const regulator::Budget budget = regulator::frame_budget(options);
       int renders = 0;
-      for (const FrameReport& report : fleet(12, seed, options).run(kFrames, false)) {
+      for (const FrameReport& report : small_fleet(12, seed, options).run(kPlannedFrames, false)) {
         regulator::LayerCost spent, first;
         for (const regulator::LayerDecision& d : report.plan.decisions) {
           regulator::LayerCost& of = report.assessments[d.layer].has_sprite ? spent : first;
@@ -86,7 +88,7 @@ TEST(PlanBudget, ErrorFallsAsPolygonsGrow) {
   for (const unsigned seed : kSeeds) {
     double least = HUGE_VAL, first = 0, last = 0;
     for (int layers = 0; layers <= 12; layers += 2) {
-      last = error_of(fleet(12, seed, within(12 * layers, kNoLimit)).run(kFrames, false));
+      last = error_of(small_fleet(12, seed, within(12 * layers, kNoLimit)).run(kPlannedFrames, false));
       EXPECT_LE(last, 1.1 * least) << "seed " << seed << ", " << layers << " cubes per frame";
       least = std::min(least, last);
       if (layers == 0) first = last;
@@ -99,7 +101,7 @@ TEST(PlanBudget, ResolutionRisesAsPixelsGrow) {
   const auto mean_resolution = [](std::int64_t pixels) {
     double sum = 0;
     int shown = 0;
-    for (const FrameReport& report : fleet(12, 1, within(kNoLimit, pixels)).run(kFrames, false))
+    for (const FrameReport& report : small_fleet(12, 1, within(kNoLimit, pixels)).run(kPlannedFrames, false))
       for (const regulator::LayerDecision& d : report.plan.decisions) {
         if (d.action == Action::Drop) continue;
         sum += d.resolution;
@@ -117,10 +119,10 @@ TEST(PlanBudget, ResolutionRisesAsPixelsGrow) {
 }
 
 TEST(PlanBudget, ResolutionChangesByATenthFromRenderToRenderUnlessItHadToWait) {
-  std::vector<double> at_last_render(12, 0);
-  std::vector<int> waited(12, 0);
+  std::map<int, double> at_last_render;  // by layer, of which there may come to be more: aggregates
+  std::map<int, int> waited;
   int changes = 0;
-  for (const FrameReport& report : fleet(12, 2, within(kNoLimit, 2000)).run(kFrames, false))
+  for (const FrameReport& report : small_fleet(12, 2, within(kNoLimit, 2000)).run(kPlannedFrames, false))
     for (const regulator::LayerDecision& d : report.plan.decisions) {
       waited[d.layer] = d.short_of_area             ? waited[d.layer] + 1
                         : d.action == Action::Reuse ? 0
@@ -141,7 +143,7 @@ TEST(PlanBudget, ResolutionChangesByATenthFromRenderToRenderUnlessItHadToWait) {
 TEST(PlanBudget, LayerDearerThanAllPixelsIsDrawnInTheEndWithoutSpendingMore) {
   // One ship alone, first seen under an ample budget; then the budget is a fifth of what it takes.
   RegulatorOptions ample = within(kNoLimit, 1'000'000), scarce = within(kNoLimit, 150);
-  const SmallRun small = fleet(1, 5, ample);
+  const SmallRun small = small_fleet(1, 5, ample);
   Settings settings = small.settings;
   const Pipeline rich = make_pipeline(small.scene, small.layers, settings);
   settings.regulator = scarce;
@@ -184,7 +186,7 @@ TEST(PlanBudget, SceneAtRestIsSharpenedUntilNothingIsLeftToGain) {
 }
 
 TEST(PlanBudget, GapIsReportedOnlyWhenAskedForAndChangesNoDecision) {
-  SmallRun small = fleet(12, 3, within(48, 2000));
+  SmallRun small = small_fleet(12, 3, within(48, 2000));
   const auto plain = small.run(24, false);
   small.settings.budget_gap = true;
   const auto with_gap = small.run(24, false);
@@ -212,7 +214,7 @@ TEST(PlanOrder, LookaheadNeedsNoMoreThanThresholdAndTheOracleFewest) {
   for (const unsigned seed : kSeeds)
     for (const double px : {0.5, 2.0}) {
       const auto renders = [&](const RegulatorOptions& options) {
-        return count(fleet(6, seed, options).run(kFrames, false), Action::Rerender);
+        return count(small_fleet(6, seed, options).run(kPlannedFrames, false), Action::Rerender);
       };
       const int threshold = renders(bounded(Policy::Threshold, px));
       const int oracle = renders(bounded(Policy::Oracle, px));
@@ -257,7 +259,7 @@ TEST(PlanOracle, EqualsEveryWayToCutATinySequence) {
   constexpr int kTiny = 11;
   int compared = 0;
   for (const unsigned seed : {7u, 8u, 9u}) {
-    SmallRun small = fleet(3, seed, bounded(Policy::Oracle, 1));
+    SmallRun small = small_fleet(3, seed, bounded(Policy::Oracle, 1));
     small.settings.fps = 8;  // fast, so that there is something to choose
     small.settings.frames = kTiny;
     const auto reports = small.run(kTiny, false);
@@ -292,8 +294,8 @@ TEST(PlanPredicted, DisplayedErrorNeverExceedsTheBoundHoweverWrongThePredictionW
     for (const double px : {0.5, 2.0}) {
       int ahead = 0;
       for (const FrameReport& report :
-           fleet(6, seed, bounded(Policy::Lookahead, px, 12, regulator::Prediction::Linear))
-               .run(kFrames, false))
+           small_fleet(6, seed, bounded(Policy::Lookahead, px, 12, regulator::Prediction::Linear))
+               .run(kPlannedFrames, false))
         for (const regulator::LayerDecision& d : report.plan.decisions) {
           EXPECT_LE(d.shown_geometric_px, px) << "seed " << seed << " frame " << report.frame;
           ahead += d.depicts_frame > report.frame;
@@ -303,9 +305,9 @@ TEST(PlanPredicted, DisplayedErrorNeverExceedsTheBoundHoweverWrongThePredictionW
 }
 
 TEST(PlanPredicted, WithoutLookaheadItIsTheThresholdPolicy) {
-  const auto threshold = fleet(6, 1, bounded(Policy::Threshold, 1)).run(kFrames, false);
-  const auto none =
-      fleet(6, 1, bounded(Policy::Lookahead, 1, 0, regulator::Prediction::Linear)).run(kFrames, false);
+  const auto threshold = small_fleet(6, 1, bounded(Policy::Threshold, 1)).run(kPlannedFrames, false);
+  const auto none = small_fleet(6, 1, bounded(Policy::Lookahead, 1, 0, regulator::Prediction::Linear))
+                        .run(kPlannedFrames, false);
   EXPECT_NEAR(count(none, Action::Rerender), count(threshold, Action::Rerender),
               0.03 * count(threshold, Action::Rerender))
       << "only the growth of clipped extents may differ, by the velocity that is expected";
@@ -328,7 +330,7 @@ TEST(PlanPredicted, ConstantMotionIsForeseenAsIfItWereKnown) {
 }
 
 TEST(PlanPredicted, SpriteOfAnExpectedInstantIsTheSameDrawnAtOnceOrLate) {
-  SmallRun small = fleet(4, 2, bounded(Policy::Lookahead, 1, 6, regulator::Prediction::Linear));
+  SmallRun small = small_fleet(4, 2, bounded(Policy::Lookahead, 1, 6, regulator::Prediction::Linear));
   small.settings.frames = 20;
   const auto at_once = small.run(20, true);
   const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);

@@ -24,40 +24,42 @@ using tests::run;
 using tests::Show;
 using tests::with_flying_ball;
 
-constexpr int kFrames = 16;
+constexpr int kShadedFrames = 16;
 
 TEST(ShadePasses, RoomWithoutEffectsMakesNone) {
-  const Show plain = run(with_flying_ball(Room()), Policy::Threshold, kFrames, true);
+  const Show plain = run(with_flying_ball(Room()), Policy::Threshold, kShadedFrames, true);
   EXPECT_EQ(plain.passes(), ShadeCounters{});
 }
 
 TEST(ShadePasses, LightAndCastersAtRestAreMappedOnce) {
   // The camera moves, so every layer is drawn again in every frame of `reference`; the map is not.
-  const Show still = run(Room().casting().factored().spinning(2), Policy::Reference, kFrames, true);
+  const Show still = run(Room().casting().factored().spinning(2), Policy::Reference, kShadedFrames, true);
   EXPECT_EQ(still.passes().shadow_maps_drawn, 1);
-  EXPECT_GT(still.passes().shadow_maps_reused, kFrames);
+  EXPECT_GT(still.passes().shadow_maps_reused, kShadedFrames);
 }
 
 TEST(ShadePasses, MovingCasterIsMappedOncePerFrameHoweverManyLayersLookItUp) {
   const Show moving =
-      run(with_flying_ball(Room().casting().shining().factored()), Policy::Reference, kFrames, true);
-  EXPECT_EQ(moving.passes().shadow_maps_drawn, kFrames);
+      run(with_flying_ball(Room().casting().shining().factored()), Policy::Reference, kShadedFrames, true);
+  EXPECT_EQ(moving.passes().shadow_maps_drawn, kShadedFrames);
 }
 
 TEST(ShadePasses, MovingShadowLeavesItsReceiverAlone) {
-  const Show factored = run(with_flying_ball(Room().casting().factored()), Policy::Threshold, kFrames, true);
+  const Show factored =
+      run(with_flying_ball(Room().casting().factored()), Policy::Threshold, kShadedFrames, true);
   EXPECT_EQ(factored.renders("floor"), 1);
   EXPECT_GT(factored.renders("floor/shadow of lamp"), 2);
-  const Show unfactored = run(with_flying_ball(Room().casting()), Policy::Threshold, kFrames, true);
+  const Show unfactored = run(with_flying_ball(Room().casting()), Policy::Threshold, kShadedFrames, true);
   EXPECT_GT(unfactored.renders("floor"), 2);  // the same shadow, in the floor's own sprite
 }
 
 TEST(ShadePasses, PlanWithoutPixelsMakesTheSameDecisionsAndPasses) {
   const Room room = with_flying_ball(Room().casting().mirroring().shining().textured_twice().factored());
   for (const Policy policy : {Policy::Threshold, Policy::Hold, Policy::Lookahead, Policy::Budget}) {
-    const Show planned = run(room, policy, kFrames, false), drawn = run(room, policy, kFrames, true);
+    const Show planned = run(room, policy, kShadedFrames, false),
+               drawn = run(room, policy, kShadedFrames, true);
     EXPECT_EQ(planned.passes(), drawn.passes());
-    for (int frame = 0; frame < kFrames; ++frame)
+    for (int frame = 0; frame < kShadedFrames; ++frame)
       for (std::size_t i = 0; i < planned.layers.layers.size(); ++i) {
         const auto& a = planned.reports[frame].plan.decisions[i];
         const auto& b = drawn.reports[frame].plan.decisions[i];

@@ -15,7 +15,7 @@ namespace {
 
 using regulator::Policy;
 
-constexpr int kFrames = 16;
+constexpr int kDrawnFrames = 16;
 
 /// moving_scene: a ground at rest, a cube that spins, a moon that orbits, seen by a moving camera.
 struct Film {
@@ -27,7 +27,7 @@ struct Film {
     settings.regulator.policy = policy;
     settings.regulator.thresholds.geometric_px = geometric_px;
     settings.view.display_px = {200, 150};
-    settings.frames = kFrames;
+    settings.frames = kDrawnFrames;
   }
   Film& blurred(double shutter) {
     for (layers::Layer& layer : layers.layers) layer.preferences.motion_blur = shutter;
@@ -42,7 +42,7 @@ struct Film {
     const chunker::PreparedScene prepared(scene);
     PipelineState state(pipeline);
     std::vector<FrameReport> all;
-    for (int frame = 0; frame < kFrames; ++frame) all.push_back(step(pipeline, state, frame, &prepared));
+    for (int frame = 0; frame < kDrawnFrames; ++frame) all.push_back(step(pipeline, state, frame, &prepared));
     return all;
   }
 };
@@ -73,7 +73,7 @@ TEST(SpriteCompressionInARun, NothingOfItExistsUnlessItIsAskedFor) {
 TEST(SpriteCompressionInARun, ShowsNearlyTheSameAndDecidesTheSame) {
   const auto plain = Film(Policy::Threshold).reports(),
              packed = Film(Policy::Threshold).compressed(95).reports();
-  for (int f = 0; f < kFrames; ++f) {
+  for (int f = 0; f < kDrawnFrames; ++f) {
     EXPECT_LE(largest_difference(plain[f].picture, packed[f].picture), 24) << f;
     ASSERT_EQ(plain[f].plan.decisions.size(), packed[f].plan.decisions.size());
     for (std::size_t i = 0; i < plain[f].plan.decisions.size(); ++i)
@@ -96,7 +96,7 @@ TEST(SpriteCompressionInARun, CountersAddUp) {
     EXPECT_LE(c.cache.bytes_read, c.compressed_bytes * c.cache.misses);
     bytes += c.compressed_bytes;
   }
-  EXPECT_EQ(sprites, 3 * kFrames);
+  EXPECT_EQ(sprites, 3 * kDrawnFrames);
   EXPECT_GT(bytes, 0);
 }
 

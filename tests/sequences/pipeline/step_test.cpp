@@ -34,23 +34,23 @@ std::vector<std::string> decisions_of(const std::vector<FrameReport>& reports) {
   return lines;
 }
 
-constexpr int kFrames = 24;
+constexpr int kSteps = 24;
 
 TEST(Step, ThresholdZeroEqualsReferenceByteForByte) {
   // moving_scene has a layer at rest, one that spins and one that orbits, seen by a moving camera; the second
   // scene rests in full.
   for (const layers::Scene& scene :
        {tests::moving_scene(), tests::cube_scene(), tests::skinned_bar_scene()}) {
-    const auto zero = SmallRun(scene).policy(Policy::Threshold, 0).run(kFrames, true);
-    const auto reference = SmallRun(scene).policy(Policy::Reference).run(kFrames, true);
+    const auto zero = SmallRun(scene).policy(Policy::Threshold, 0).run(kSteps, true);
+    const auto reference = SmallRun(scene).policy(Policy::Reference).run(kSteps, true);
     EXPECT_EQ(hashes_of(zero), hashes_of(reference));
   }
 }
 
 TEST(Step, SceneAtRestIsRenderedOnceAtThresholdZero) {
-  const auto reports = SmallRun(tests::cube_scene()).policy(Policy::Threshold, 0).run(kFrames, true);
+  const auto reports = SmallRun(tests::cube_scene()).policy(Policy::Threshold, 0).run(kSteps, true);
   EXPECT_EQ(count(reports, Action::Rerender), 1);
-  EXPECT_EQ(count(reports, Action::Reuse), kFrames - 1);
+  EXPECT_EQ(count(reports, Action::Reuse), kSteps - 1);
 }
 
 /// The policies that use the fiducials, each so tight that it renders and reuses on moving_scene.
@@ -59,7 +59,7 @@ std::vector<SmallRun> fiducial_policies() {
   for (const Policy policy : {Policy::Threshold, Policy::Budget, Policy::Lookahead, Policy::Oracle}) {
     runs.push_back(SmallRun(tests::moving_scene()).policy(policy, 2).lookahead(6));
     runs.back().settings.regulator.budget.pixels = 12'000;
-    runs.back().settings.frames = kFrames;
+    runs.back().settings.frames = kSteps;
   }
   return runs;
 }
@@ -67,8 +67,8 @@ std::vector<SmallRun> fiducial_policies() {
 TEST(Step, PlanWithoutPixelsMakesTheSameDecisions) {
   for (const SmallRun& small : fiducial_policies()) {
     SCOPED_TRACE(std::string(regulator::name(small.settings.regulator.policy)));
-    const auto planned = small.run(kFrames, false);
-    const auto rendered = small.run(kFrames, true);
+    const auto planned = small.run(kSteps, false);
+    const auto rendered = small.run(kSteps, true);
     EXPECT_EQ(decisions_of(planned), decisions_of(rendered));
     EXPECT_GT(count(planned, Action::Reuse), 0);
     EXPECT_GT(count(planned, Action::Rerender), static_cast<int>(small.layers.layers.size()));
@@ -92,13 +92,13 @@ TEST(Step, FrameDrawnAfterPlanningOnlyHasTheSameBytes) {
   // --frames and --resume: every frame before the last is planned, not drawn.
   for (const SmallRun& small : fiducial_policies()) {
     SCOPED_TRACE(std::string(regulator::name(small.settings.regulator.policy)));
-    const auto all = small.run(kFrames, true);
+    const auto all = small.run(kSteps, true);
     const Pipeline pipeline = make_pipeline(small.scene, small.layers, small.settings);
     const chunker::PreparedScene prepared(small.scene);
     PipelineState state(pipeline);
     int late_renders = 0;
-    for (int frame = 0; frame < kFrames; ++frame) {
-      const bool draw = frame % 5 == 4 || frame == kFrames - 1;
+    for (int frame = 0; frame < kSteps; ++frame) {
+      const bool draw = frame % 5 == 4 || frame == kSteps - 1;
       const FrameReport report = step(pipeline, state, frame, draw ? &prepared : nullptr);
       late_renders += report.late_renders;
       if (draw) {
@@ -117,9 +117,9 @@ TEST(Step, DisplayedErrorNeverExceedsTheThreshold) {
 }
 
 TEST(StepLookahead, WithoutLookaheadEqualsThresholdByteForByte) {
-  const auto threshold = SmallRun(tests::moving_scene()).policy(Policy::Threshold, 2).run(kFrames, true);
+  const auto threshold = SmallRun(tests::moving_scene()).policy(Policy::Threshold, 2).run(kSteps, true);
   const auto none =
-      SmallRun(tests::moving_scene()).policy(Policy::Lookahead, 2).lookahead(0).run(kFrames, true);
+      SmallRun(tests::moving_scene()).policy(Policy::Lookahead, 2).lookahead(0).run(kSteps, true);
   EXPECT_EQ(count(none, Action::Rerender), count(threshold, Action::Rerender));
   EXPECT_EQ(hashes_of(none), hashes_of(threshold));
 }
@@ -240,7 +240,7 @@ TEST(StepBudget, NoFrameSpendsMoreThanItsBudgetExceptOnFirstAppearances) {
 TEST(StepBudget, UnlimitedBudgetWithoutCutOffLeavesNoError) {
   SmallRun small = SmallRun(tests::moving_scene()).policy(Policy::Budget);
   small.settings.regulator.budget.cutoff_px = 0;
-  for (const FrameReport& report : small.run(kFrames, false))
+  for (const FrameReport& report : small.run(kSteps, false))
     for (const regulator::LayerDecision& d : report.plan.decisions) EXPECT_LT(d.shown_geometric_px, 1e-9);
 }
 
@@ -323,7 +323,7 @@ TEST(Step, SameDecisionsInMillimetresAndMegametres) {
   // Nothing in the decision side may depend on the unit of length.
   const auto decisions = [](const layers::Scene& scene) {
     std::vector<Action> actions;
-    for (const FrameReport& report : SmallRun(scene).policy(Policy::Threshold, 2).run(kFrames, false))
+    for (const FrameReport& report : SmallRun(scene).policy(Policy::Threshold, 2).run(kSteps, false))
       for (const regulator::LayerDecision& d : report.plan.decisions) actions.push_back(d.action);
     return actions;
   };

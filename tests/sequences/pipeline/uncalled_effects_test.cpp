@@ -20,7 +20,7 @@ namespace {
 using layers::Effect;
 using layers::LayerKind;
 
-constexpr int kFrames = 8;
+constexpr int kQuietFrames = 8;
 
 /// A whole run, kept open: its memory can be looked at.
 struct WholeRun {
@@ -30,7 +30,7 @@ struct WholeRun {
         prepared(*variant.sequence.scene, variant.settings.render),
         state(pipeline),
         summary(start_summary(pipeline, "all")) {
-    for (int frame = 0; frame < kFrames; ++frame) {
+    for (int frame = 0; frame < kQuietFrames; ++frame) {
       reports.push_back(step(pipeline, state, frame, &prepared));
       add_decisions(summary, reports.back(), state);
       summary.frames.push_back(line_of(reports.back()));
@@ -172,6 +172,12 @@ std::size_t morph_matrices_of(const WholeRun& run, int layer) {
   return (weights + 15) / 16;
 }
 
+Numbers of_specular_layers(const WholeRun& run) {
+  Numbers n = of_shade_layers(run, LayerKind::Specular);
+  n["highlights followed"] = traces_of(run, layers::ShadeTrace::Kind::Highlight);
+  return n;
+}
+
 /// Every number of a run that belongs to one effect, besides its passes.
 Numbers numbers_of(const WholeRun& run, Effect effect) {
   switch (effect) {
@@ -199,11 +205,8 @@ Numbers numbers_of(const WholeRun& run, Effect effect) {
       return of_reflection_maps(run);
     case Effect::ShadowLayer:
       return of_shade_layers(run, LayerKind::Shadow);
-    case Effect::SpecularLayer: {
-      Numbers n = of_shade_layers(run, LayerKind::Specular);
-      n["highlights followed"] = traces_of(run, layers::ShadeTrace::Kind::Highlight);
-      return n;
-    }
+    case Effect::SpecularLayer:
+      return of_specular_layers(run);
     case Effect::ReflectionLayer:
       return of_shade_layers(run, LayerKind::Reflection);
     case Effect::TextureLayers:
@@ -227,14 +230,14 @@ double passes_of(const WholeRun& run, Effect effect) {
 }
 
 const WholeRun& run_with_all() {
-  static const WholeRun run(tests::every_effect(kFrames));
+  static const WholeRun run(tests::every_effect(kQuietFrames));
   return run;
 }
 
 class UncalledEffect : public testing::TestWithParam<Effect> {};
 
 TEST_P(UncalledEffect, LeavesNothingInTheRun) {
-  const WholeRun without(without_effect(tests::every_effect(kFrames), GetParam()));
+  const WholeRun without(without_effect(tests::every_effect(kQuietFrames), GetParam()));
   EXPECT_EQ(passes_of(without, GetParam()), 0);
   EXPECT_GT(passes_of(run_with_all(), GetParam()), 0) << "the sequence must call for it";
   const Numbers with_it = numbers_of(run_with_all(), GetParam());
@@ -250,7 +253,7 @@ std::string effect_name(const testing::TestParamInfo<Effect>& info) {
 INSTANTIATE_TEST_SUITE_P(Of, UncalledEffect, testing::ValuesIn(layers::kAllEffects), effect_name);
 
 TEST(UncalledEffects, CompressionIsNotInTheLinesOfTheFrames) {
-  const WholeRun without(without_effect(tests::every_effect(kFrames), Effect::SpriteCompression));
+  const WholeRun without(without_effect(tests::every_effect(kQuietFrames), Effect::SpriteCompression));
   for (const FrameLine& line : without.summary.frames)
     EXPECT_THAT(json_of(line), testing::Not(testing::HasSubstr("compression")));
   EXPECT_THAT(json_of(run_with_all().summary.frames.front()), testing::HasSubstr("compression"));
@@ -260,7 +263,7 @@ TEST(UncalledEffects, CompressionIsNotInTheLinesOfTheFrames) {
 // at the display's density none is. The eye follows the ball, so every shutter is opened, at four frames a
 // second: what stands aside goes by more than a pixel.
 TEST(UncalledEffects, MotionBlurLeavesNoCoarseSprite) {
-  Variant sharp = without_effect(tests::every_effect(kFrames), Effect::LayerResolution);
+  Variant sharp = without_effect(tests::every_effect(kQuietFrames), Effect::LayerResolution);
   sharp.sequence.fps = sharp.settings.fps = 4;
   for (layers::LayerSpec& spec : sharp.sequence.layer_specs) spec.preferences.motion_blur = 1;
   sharp.sequence.layers = layers::factor(*sharp.sequence.scene, sharp.sequence.layer_specs);
@@ -269,7 +272,7 @@ TEST(UncalledEffects, MotionBlurLeavesNoCoarseSprite) {
 }
 
 TEST(UncalledEffects, LayerResolutionLeavesNoCoarseSprite) {
-  const Variant still = without_effect(tests::every_effect(kFrames), Effect::MotionBlur);
+  const Variant still = without_effect(tests::every_effect(kQuietFrames), Effect::MotionBlur);
   EXPECT_GT(coarse_sprites(WholeRun(still)), 0);
   EXPECT_EQ(coarse_sprites(WholeRun(without_effect(still, Effect::LayerResolution))), 0);
 }
