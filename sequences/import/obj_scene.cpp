@@ -140,12 +140,12 @@ class SmoothNormals {
     for (const tinyobj::shape_t& shape : content.shapes)
       for (std::size_t f = 0; 3 * f < shape.mesh.indices.size(); ++f) {
         const dvec3 n = flat(shape.mesh, f);
-        for (std::size_t k = 0; k < 3; ++k) sums_[key_of(shape.mesh, f, k)] += n;
+        for (std::size_t k = 0; k < 3; ++k) sum_at(shape.mesh, f, k) += n;
       }
   }
-  layers::vec3 at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner) const {
+  layers::vec3 at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner) {
     const bool is_flat = content_.has_groups && mesh.smoothing_group_ids[face] == 0;
-    const dvec3 n = is_flat ? flat(mesh, face) : sums_.at(key_of(mesh, face, corner));
+    const dvec3 n = is_flat ? flat(mesh, face) : sum_at(mesh, face, corner);
     const double length = glm::length(n);
     return length > 1e-12 ? layers::vec3(n / length) : layers::vec3(0, 1, 0);
   }
@@ -167,12 +167,17 @@ class SmoothNormals {
   void number_places() {
     std::unordered_map<dvec3, std::uint32_t, Hash> number_of;
     const int count = static_cast<int>(content_.attributes.vertices.size() / 3);
+    number_of.reserve(static_cast<std::size_t>(count));
+    place_.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i)
       place_.push_back(number_of.emplace(place_of(content_, i) + 0.0, number_of.size()).first->second);
+    sums_.resize(number_of.size(), dvec3(0));
   }
-  std::uint64_t key_of(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner) const {
+  dvec3& sum_at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner) {
+    const std::uint32_t place =
+        place_[static_cast<std::size_t>(mesh.indices[3 * face + corner].vertex_index)];
     const std::uint64_t group = content_.has_groups ? mesh.smoothing_group_ids[face] : 0;
-    return group << 32 | place_[static_cast<std::size_t>(mesh.indices[3 * face + corner].vertex_index)];
+    return group == 0 ? sums_[place] : sums_of_groups_[group << 32 | place];
   }
   dvec3 flat(const tinyobj::mesh_t& mesh, std::size_t face) const {
     dvec3 p[3];
@@ -184,13 +189,14 @@ class SmoothNormals {
 
   const ObjContent& content_;
   std::vector<std::uint32_t> place_;
-  std::unordered_map<std::uint64_t, dvec3> sums_;
+  std::vector<dvec3> sums_;  ///< by place, of what has no group
+  std::unordered_map<std::uint64_t, dvec3> sums_of_groups_;
 };
 
 /// Every combination of place, coordinates and normal once, found by the place.
 class MeshBuilder {
  public:
-  MeshBuilder(const ObjContent& content, const dvec3& origin, const SmoothNormals* smooth)
+  MeshBuilder(const ObjContent& content, const dvec3& origin, SmoothNormals* smooth)
       : content_(content),
         origin_(origin),
         smooth_(smooth),
@@ -262,7 +268,7 @@ class MeshBuilder {
 
   const ObjContent& content_;
   dvec3 origin_;
-  const SmoothNormals* smooth_;
+  SmoothNormals* smooth_;
   std::vector<int> first_;  ///< by place: the last of its combinations; -1: none
   std::vector<Known> known_;
   std::vector<int> used_;
