@@ -39,12 +39,21 @@ struct ObjWords {
   std::map<std::string, int> id_of;    ///< by the first word, as the geometry's reader has it
 };
 
+/// The geometry's reader takes what is no number for 0.
+void check_numbers(const std::string& line) {
+  if (line.find_first_of("nNiI", line.find_first_of(" \t")) == std::string::npos) return;
+  if (line.find_first_of(" \t") != std::string::npos)
+    throw InputError("a mesh has '" + line.substr(0, 60) + "', rule: finite numbers");
+}
+
 ObjWords words_of(const std::string& path) {
   ObjWords words;
   std::ifstream in(path, std::ios::binary);
   for (std::string line; std::getline(in, line);) {
     const std::size_t at = line.find_first_not_of(" \t");
-    if (at == std::string::npos || (line[at] != 'm' && line[at] != 'u')) continue;
+    if (at == std::string::npos) continue;
+    if (line[at] == 'v') check_numbers(line);
+    if (line[at] != 'm' && line[at] != 'u') continue;
     if (line.compare(at, 6, "mtllib") == 0) words.libraries += "mtllib " + rest_of_line(line, at + 6) + "\n";
     if (line.compare(at, 6, "usemtl") != 0) continue;
     const std::string name = rest_of_line(line, at + 6);
