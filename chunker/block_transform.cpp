@@ -64,8 +64,9 @@ Block forward_transform(const Block& f) {
   return multiplied(kTransform, multiplied(kTransform, f, kFixedBits - kFractionBits), kFixedBits);
 }
 
-Block inverse_transform(const Block& F) {
-  return multiplied(kTransposed, multiplied(kTransposed, F, kFixedBits), kFixedBits + kFractionBits);
+Block inverse_transform(const Block& coefficients) {
+  return multiplied(kTransposed, multiplied(kTransposed, coefficients, kFixedBits),
+                    kFixedBits + kFractionBits);
 }
 
 const std::array<int, kBlockTexels>& zig_zag() {

@@ -19,10 +19,10 @@ using Block = std::array<int, kBlockTexels>;
 
 inline constexpr int kLargestCoefficient = 16383;  ///< quarters
 
-/// |f| ≤ 511, so |F| ≤ kLargestCoefficient but for rounding.
+/// |f| ≤ 511, so its transform stays within kLargestCoefficient but for rounding.
 Block forward_transform(const Block& f);
-/// |F| ≤ kLargestCoefficient.
-Block inverse_transform(const Block& F);
+/// Of coefficients of at most kLargestCoefficient.
+Block inverse_transform(const Block& coefficients);
 
 /// Place of the i-th coefficient on the way from low to high frequencies.
 const std::array<int, kBlockTexels>& zig_zag();

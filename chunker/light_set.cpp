@@ -43,7 +43,7 @@ LightSet::Fading fading(const layers::LightState& light) {
   fading.constant = static_cast<float>(light.attenuation.x);
   fading.linear = static_cast<float>(light.attenuation.y);
   fading.quadratic = static_cast<float>(light.attenuation.z);
-  if (light.range_m > 0) fading.per_range4 = static_cast<float>(1 / std::pow(light.range_m, 4));
+  if (light.range_m > 0) fading.per_range2 = static_cast<float>(1 / (light.range_m * light.range_m));
   return fading;
 }
 

@@ -59,9 +59,9 @@ struct LightSet {
     Float4 color;
     int shadow = -1;  ///< index of its map among `shadow_maps`; -1: it casts no shadow
   };
-  /// As Light::attenuation and 1 / range⁴.
+  /// As Light::attenuation and 1 / range². (Its square would not fit a float for ranges beyond 1e9 m.)
   struct Fading {
-    float constant = 1, linear = 0, quadratic = 0, per_range4 = 0;
+    float constant = 1, linear = 0, quadratic = 0, per_range2 = 0;
     bool any = false;
   };
   struct Point {
@@ -254,7 +254,7 @@ Float4 emission_at(const Shader& shader, const Interpolator& t, const Lambda& at
 inline float faded(const LightSet::Fading& fading, float squared_m) {
   const float distance = std::sqrt(squared_m);
   const float below = fading.constant + distance * (fading.linear + distance * fading.quadratic);
-  const float in_range = 1 - squared_m * squared_m * fading.per_range4;
+  const float relative = squared_m * fading.per_range2, in_range = 1 - relative * relative;
   return (in_range > 0 ? in_range : 0.0f) / (below > 1e-12f ? below : 1e-12f);
 }
 

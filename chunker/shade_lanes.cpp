@@ -306,7 +306,8 @@ HWY_INLINE Vec3 faded_color(const LightSet::Fading& fading, const Vec3& apart, c
   const Vec squared = dot(apart, apart), distance = hn::Sqrt(squared);
   const Vec slope = hn::Add(set(fading.linear), hn::Mul(distance, set(fading.quadratic)));
   const Vec below = hn::Add(set(fading.constant), hn::Mul(distance, slope));
-  const Vec in_range = hn::Sub(set(1), hn::Mul(hn::Mul(squared, squared), set(fading.per_range4)));
+  const Vec relative = hn::Mul(squared, set(fading.per_range2));
+  const Vec in_range = hn::Sub(set(1), hn::Mul(relative, relative));
   const Vec least = set(1e-12f);
   const Vec factor = hn::Div(hn::IfThenElseZero(hn::Gt(in_range, set(0)), in_range),
                              hn::IfThenElse(hn::Gt(below, least), below, least));

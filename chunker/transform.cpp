@@ -20,8 +20,9 @@ using layers::dvec3;
 using layers::dvec4;
 using layers::ivec2;
 
-/// No camera looks nearer than this; it keeps 1/w, and its gradients, inside the range of float.
-constexpr double kSmallestNear = 1e-12;
+/// No camera looks nearer than this; it keeps 1/w inside the range of float, and its gradients, which are up to 5e8 times
+/// as large on a triangle of one unit of the lattice.
+constexpr double kSmallestNear = 1e-27;
 
 Rows34 rows_of(const dmat4& m) {
   Rows34 rows;

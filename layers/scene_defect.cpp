@@ -50,6 +50,25 @@ std::string finite_array(const char* what, const std::vector<V>& values) {
   return {};
 }
 
+/// The renderer lights points in float, relative to the eye, with the squares of distances: beyond this they are no longer
+/// finite, and nearer than that they vanish.
+constexpr double kFarthestPlace_m = 5e18, kNearestNear_m = 1e-20;
+
+template <typename V>
+std::string place_defect(const std::string& what, const V& place) {
+  if (auto defect = finite(what, place); !defect.empty()) return defect;
+  for (int k = 0; k < place.length(); ++k)
+    if (std::fabs(place[k]) > kFarthestPlace_m)
+      return broken(text("within ", kFarthestPlace_m, " m of the origin"), what, " has component ", place[k]);
+  return {};
+}
+
+std::string places_defect(const char* what, const std::vector<vec3>& places) {
+  for (std::size_t i = 0; i < places.size(); ++i)
+    if (auto defect = place_defect(text(what, " ", i), places[i]); !defect.empty()) return defect;
+  return {};
+}
+
 template <typename Size>
 std::string index_in(const char* what, int index, Size size, bool or_none) {
   const int lowest = or_none ? -1 : 0;
@@ -127,7 +146,7 @@ std::string defect_of(const Scene&, const Mesh& mesh) {
        optional_length("weights", mesh.weights.size(), n),
        optional_length("emissive uvs", mesh.emissive_uvs.size(), n),
        optional_length("alphas", mesh.alphas.size(), n), finite_array("emissive uv", mesh.emissive_uvs),
-       alpha_defect(mesh), morph_defect(mesh), finite_array("position", mesh.positions),
+       alpha_defect(mesh), morph_defect(mesh), places_defect("position", mesh.positions),
        finite_array("normal", mesh.normals), finite_array("uv", mesh.uvs), finite_array("color", mesh.colors),
        finite_array("weight", mesh.weights), index_array_defect(mesh), weight_defect(mesh)});
 }
@@ -186,7 +205,7 @@ std::string defect_of(const Scene& scene, const Node& node) {
     return broken(text("-1 or a node before it, below ", own_index), "parent ", node.parent);
   for (const double weight : node.morph_weights)
     if (auto d = finite("morph weight", weight); !d.empty()) return d;
-  return first_of({finite("translation", node.local.translation),
+  return first_of({place_defect("translation", node.local.translation),
                    rotation_defect("rotation", node.local.rotation), finite("scale", node.local.scale)});
 }
 
@@ -229,8 +248,15 @@ std::string keys_defect(const std::string& channel, const Keys<T>& keys) {
   return keys.interpolation == Interpolation::CubicSpline ? tangent_defect(channel, keys) : "";
 }
 
+std::string path_defect(const char* channel, const Keys<dvec3>& keys) {
+  if (auto defect = keys_defect(channel, keys); !defect.empty()) return defect;
+  for (std::size_t i = 0; i < keys.values.size(); ++i)
+    if (auto defect = place_defect(text(channel, " key ", i), keys.values[i]); !defect.empty()) return defect;
+  return {};
+}
+
 std::string motion_defect(const TransformTrack& track) {
-  return first_of({keys_defect("translation", track.translation), keys_defect("rotation", track.rotation),
+  return first_of({path_defect("translation", track.translation), keys_defect("rotation", track.rotation),
                    keys_defect("scale", track.scale), loop_end_defect(track.loop_end_s)});
 }
 
@@ -242,7 +268,7 @@ std::string motion_defect(const MorphTrack& track) {
 
 std::string motion_defect(const FlightTrack& track) {
   if (track.position.values.empty()) return broken("at least 1", "flight with 0 positions");
-  return first_of({keys_defect("position", track.position), keys_defect("target", track.target),
+  return first_of({path_defect("position", track.position), path_defect("target", track.target),
                    keys_defect("bank", track.bank_rad)});
 }
 
@@ -286,9 +312,10 @@ std::string shadow_defect(const Light& light) {
 std::string defect_of(const Scene& scene, const Light& light) {
   const bool aimed = light.kind == Light::Kind::Directional || light.kind == Light::Kind::Spot;
   if (aimed && light.direction == dvec3{0, 0, 0}) return broken("not zero", "direction is zero");
-  return first_of({index_in("node", light.node, scene.nodes.size(), true), finite("position", light.position),
-                   finite("direction", light.direction), color_defect("color", light.color),
-                   cone_defect(light), attenuation_defect(light), shadow_defect(light)});
+  return first_of({index_in("node", light.node, scene.nodes.size(), true),
+                   place_defect("position", light.position), finite("direction", light.direction),
+                   color_defect("color", light.color), cone_defect(light), attenuation_defect(light),
+                   shadow_defect(light)});
 }
 
 std::string defect_of(const Scene& scene, const Camera& camera) {
@@ -296,6 +323,8 @@ std::string defect_of(const Scene& scene, const Camera& camera) {
     return broken("above 0 and below pi", "fov_y_rad ", camera.fov_y_rad);
   if (!(camera.near_m > 0 && camera.near_m < camera.far_m && std::isfinite(camera.far_m)))
     return broken("0 < near < far, finite", "near_m ", camera.near_m, " and far_m ", camera.far_m);
+  if (camera.near_m < kNearestNear_m)
+    return broken(text("at least ", kNearestNear_m), "near_m ", camera.near_m);
   return index_in("node", camera.node, scene.nodes.size(), true);
 }
 

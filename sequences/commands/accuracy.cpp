@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "sequences/commands/accuracy_factoring.h"
+#include "sequences/commands/accuracy_hard.h"
 #include "sequences/commands/accuracy_regulator.h"
 #include "sequences/commands/accuracy_renderer.h"
 #include "sequences/commands/words.h"
@@ -29,12 +30,14 @@ int run_solver_accuracy(const AccuracyOptions& options, std::ostream& out) {
 int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
   const bool regulator = !options.regulator.sequence.empty(), renderer = !options.renderer.empty(),
              factoring = !options.factoring.empty();
-  const int experiments = options.solvers + regulator + renderer + factoring;
+  const int experiments = options.solvers + options.hard + regulator + renderer + factoring;
   if (experiments != 1)
     throw InputError(
         "accuracy: " + std::string(experiments == 0 ? "nothing to measure" : "more than one experiment") +
-        ", rule: one of --solvers, --regulator SEQUENCE, --renderer SEQUENCE, --factoring SEQUENCE");
+        ", rule: one of --solvers, --hard, --regulator SEQUENCE, --renderer SEQUENCE, --factoring SEQUENCE");
   if (options.solvers) return run_solver_accuracy(options, out);
+  if (options.hard)
+    return run_hard_accuracy(options.out, choice("--progress", options.progress, kProgressWords), out);
   ExperimentOptions asked = options.regulator;
   asked.progress = options.progress;
   if (regulator) return run_regulator_accuracy(asked, options.out, out);

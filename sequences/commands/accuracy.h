@@ -7,6 +7,7 @@
 ///   --regulator SEQUENCE   of the whole pipeline; accuracy_regulator.h
 ///   --renderer SEQUENCE    of every knob and every effect of the renderer; accuracy_renderer.h
 ///   --factoring SEQUENCE   of shading in sprites of its own; accuracy_factoring.h
+///   --hard                 nothing: whether every stage gets right what is hard; accuracy_hard.h
 
 #include <iosfwd>
 #include <string>
@@ -17,6 +18,7 @@ namespace talisman::sequences {
 
 struct AccuracyOptions {
   bool solvers = false;         ///< exactly one of the experiments must be asked for
+  bool hard = false;            ///< likewise
   ExperimentOptions regulator;  ///< asked for by its sequence
   std::string renderer;         ///< sequence, empty: not asked for; the rest is that of `regulator`
   std::string factoring;        ///< sequence, empty: not asked for; the rest is that of `regulator`

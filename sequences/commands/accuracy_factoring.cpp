@@ -26,6 +26,7 @@ FactoringReport measure_factoring_report(const Sequence& sequence, const Experim
   const ResolvedRun run = factoring_run(sequence, options);
   FactoringReport report;
   report.sequence = sequence.name;
+  report.given = run.settings;
   report.policy = regulator::name(run.settings.regulator.policy);
   report.warp = warp::name(run.settings.curve);
   report.display_px = run.settings.view.display_px;

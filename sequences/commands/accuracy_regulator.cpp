@@ -24,6 +24,7 @@ RegulatorReport measure_regulator_report(const Sequence& sequence, const Experim
   const ProgressKind progress = run.options.progress;
   RegulatorReport report;
   report.sequence = sequence.name;
+  report.given = run.settings;
   report.warp = warp::name(run.settings.curve);
   report.display_px = run.settings.view.display_px;
   report.frames = experiment_frames(run, options.quality_every);

@@ -36,6 +36,7 @@ RendererReport measure_renderer_report(const Sequence& sequence, const Experimen
   const std::vector<int> frames = sampled_frames(drawn_from_nothing(run, options));
   RendererReport report;
   report.sequence = sequence.name;
+  report.given = run.settings;
   report.display_px = run.settings.view.display_px;
   report.rounds = kRendererRounds;
   report.policy = regulator::name(run.settings.regulator.policy);

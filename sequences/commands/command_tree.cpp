@@ -105,7 +105,10 @@ void CommandTree::add_accuracy() {
               "picture error")
       .option("--factoring", accuracy_.factoring,
               "SEQUENCE: what it costs that the compositor has only over, predicted and measured, and what "
-              "factoring saves");
+              "factoring saves")
+      .flag("--hard", accuracy_.hard,
+            "cases of every stage that a careless one gets wrong, each with its rule; exit code 1 if one is "
+            "broken");
   OptionGroup(*command, "Options")
       .option("--inputs", accuracy_.inputs, "solvers: boxes per number of points")
       .option("--frames", accuracy_.regulator.frames, "regulator, renderer, factoring: A-B, inclusive (all)")

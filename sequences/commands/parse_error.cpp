@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "sequences/commands/nearest_word.h"
+#include "sequences/content/nearest_word.h"
 
 namespace talisman::sequences {
 namespace {

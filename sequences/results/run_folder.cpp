@@ -10,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/folders.h"
 #include "sequences/files/line_file.h"
 #include "sequences/files/temporary_files.h"
 #include "sequences/results/run_identity.h"
@@ -32,12 +33,6 @@ const char* extension_of(FrameFormat format) {
       return "";
   }
   return "";
-}
-
-void make_folder(const std::string& path) {
-  std::error_code error;
-  fs::create_directories(path, error);
-  if (error) throw OutputError(path + ": folder cannot be made: " + error.message());
 }
 
 /// run.json of an earlier run; null if there is none. Throws InputError if it is nothing of ours.
@@ -117,9 +112,9 @@ KeptRun begin_run(const RunOptions& options, const Json& run) {
   if (!options.force && holds_others_files(options.out, earlier))
     throw InputError("holds files that are not of a run, rule: an empty folder, one of a run, or --force",
                      options.out);
-  make_folder(options.out);
-  if (!options.plan_only) make_folder(options.out + "/frames");
-  if (options.separate) make_folder(options.out + "/separate");
+  create_folder(options.out);
+  if (!options.plan_only) create_folder(options.out + "/frames");
+  if (options.separate) create_folder(options.out + "/separate");
   KeptRun kept;
   if (options.resume && is_render) {
     if (!earlier.is_object()) throw InputError("not a run file, must be written by talisman", run_file);

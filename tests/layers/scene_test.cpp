@@ -350,6 +350,35 @@ TEST(FirstDefect, NamesWhatIsWrongWithASkin) {
   }
 }
 
+// Squares of distances are floats where points are lit: 5e18 m apart along each axis they are 3e38.
+TEST(FirstDefect, PlacesThatTheRendererCannotHoldAreRefused) {
+  Scene right;
+  right.meshes.resize(1);
+  right.meshes[0].positions = {{5e18f, 0, 0}};
+  right.nodes.resize(1);
+  right.nodes[0].local.translation = {0, -5e18, 0};
+  right.cameras.resize(1);
+  right.cameras[0].near_m = 1e-20;
+  EXPECT_EQ(first_defect(right), "");
+  const auto defect_after = [&](auto change) {
+    Scene scene = right;
+    change(scene);
+    return first_defect(scene);
+  };
+  EXPECT_THAT(defect_after([](Scene& s) { s.meshes[0].positions[0].x = 6e18f; }),
+              HasSubstr("position 0 has component 6e+18, rule: within 5e+18 m of the origin"));
+  EXPECT_THAT(defect_after([](Scene& s) { s.nodes[0].local.translation.y = -6e18; }),
+              HasSubstr("translation has component -6e+18, rule: within"));
+  EXPECT_THAT(defect_after([](Scene& s) {
+                FlightTrack flight;
+                flight.position = {{0}, {{0, 0, 1e30}}};
+                s.tracks = {{0, flight}};
+              }),
+              HasSubstr("position key 0 has component 1e+30, rule: within"));
+  EXPECT_THAT(defect_after([](Scene& s) { s.cameras[0].near_m = 1e-21; }),
+              HasSubstr("near_m 1e-21, rule: at least 1e-20"));
+}
+
 TEST(FirstDefect, EmptySceneHasNone) { EXPECT_EQ(first_defect(Scene{}), ""); }
 
 }  // namespace

@@ -17,6 +17,7 @@
 #include "sequences/experiments/sampled_frames.h"
 #include "sequences/pictures/diff.h"
 #include "sequences/pictures/quality.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 
@@ -88,6 +89,7 @@ struct FactoringResult {
 };
 
 struct FactoringReport {
+  Settings given;  ///< what is not varied is as it is here
   std::string sequence, policy, warp;
   layers::ivec2 display_px{0, 0};
   ExperimentFrames frames;

@@ -5,18 +5,19 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sequences/experiments/columns.h"
 #include "sequences/experiments/factoring/pictures.h"
+#include "sequences/experiments/named_values.h"
 #include "sequences/experiments/statistics.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
+#include "sequences/results/settings_json.h"
 
 namespace talisman::sequences {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Column<PictureLoss> kLossColumns[] = {
+constexpr NamedValue<PictureLoss> kLossColumns[] = {
     {"rms_code_values",
      [](const PictureLoss& l) { return rms_code_values(summarize(l.frames).mean.psnr_db); }},
     {"max_code_values",
@@ -27,7 +28,7 @@ constexpr Column<PictureLoss> kLossColumns[] = {
     {"changed_pixels", [](const PictureLoss& l) { return summarize(l.frames).mean.changed_pixels; }},
 };
 
-constexpr Column<FactoredLayer> kLayerColumns[] = {
+constexpr NamedValue<FactoredLayer> kLayerColumns[] = {
     {"shade_layers", [](const FactoredLayer& l) { return double(l.shade_layers); }},
     {"frames_shown", [](const FactoredLayer& l) { return double(l.frames_shown); }},
     {"predicted_rms", [](const FactoredLayer& l) { return l.check.predicted.rms(); }},
@@ -50,7 +51,7 @@ constexpr Column<FactoredLayer> kLayerColumns[] = {
     {"values_beyond_bound", [](const FactoredLayer& l) { return double(l.check.beyond_bound); }},
 };
 
-constexpr Column<SettingResult> kCostColumns[] = {
+constexpr NamedValue<SettingResult> kCostColumns[] = {
     {"mean_update_rate", [](const SettingResult& r) { return r.mean_update_rate; }},
     {"renders", [](const SettingResult& r) { return double(r.renders); }},
     {"polygons", [](const SettingResult& r) { return double(r.polygons); }},
@@ -64,12 +65,12 @@ constexpr Column<SettingResult> kCostColumns[] = {
 };
 
 template <typename Row, std::size_t N>
-std::string csv_line(const std::string& name, const Row& row, const Column<Row> (&columns)[N]) {
+std::string csv_line(const std::string& name, const Row& row, const NamedValue<Row> (&columns)[N]) {
   return quoted(name) + csv_cells(columns, row) + "\n";
 }
 
 template <typename Row, std::size_t N>
-Json json_row(const char* key, const std::string& name, const Row& row, const Column<Row> (&columns)[N]) {
+Json json_row(const char* key, const std::string& name, const Row& row, const NamedValue<Row> (&columns)[N]) {
   Json json = {{key, name}};
   put(json, columns, row);
   return json;
@@ -184,6 +185,7 @@ std::string json_of(const FactoringReport& report) {
       {"policy", report.policy},
       {"warp", report.warp},
       {"display_px", {report.display_px.x, report.display_px.y}},
+      {"settings_given", json_of(report.given)},
       {"first_frame", report.frames.first},
       {"last_frame", report.frames.last},
       {"quality_every", report.frames.every},

@@ -15,6 +15,7 @@
 #include "sequences/experiments/regulator/settings.h"
 #include "sequences/experiments/sampled_frames.h"
 #include "sequences/pictures/quality.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 
@@ -40,6 +41,7 @@ struct SettingResult {
 };
 
 struct RegulatorReport {
+  Settings given;  ///< what is not varied is as it is here
   std::string sequence, warp;
   layers::ivec2 display_px{0, 0};
   ExperimentFrames frames;

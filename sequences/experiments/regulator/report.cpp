@@ -6,18 +6,19 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sequences/experiments/columns.h"
+#include "sequences/experiments/named_values.h"
 #include "sequences/experiments/regulator/plots.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page.h"
+#include "sequences/results/settings_json.h"
 
 namespace talisman::sequences {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr Column<SettingResult> kColumns[] = {
+constexpr NamedValue<SettingResult> kColumns[] = {
     {"mean_update_rate", [](const SettingResult& r) { return r.mean_update_rate; }},
     {"weighted_update_rate", [](const SettingResult& r) { return r.weighted_update_rate; }},
     {"renders", [](const SettingResult& r) { return double(r.renders); }},
@@ -211,6 +212,7 @@ std::string json_of(const RegulatorReport& report) {
                      {"sequence", report.sequence},
                      {"warp", report.warp},
                      {"display_px", {report.display_px.x, report.display_px.y}},
+                     {"settings_given", json_of(report.given)},
                      {"first_frame", report.frames.first},
                      {"last_frame", report.frames.last},
                      {"quality_every", report.frames.every},

@@ -89,6 +89,7 @@ struct EffectResults {
 };
 
 struct RendererReport {
+  Settings given;  ///< what is not varied is as it is here
   std::string sequence;
   layers::ivec2 display_px{0, 0};
   int rounds = 0;

@@ -6,11 +6,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "sequences/experiments/columns.h"
+#include "sequences/experiments/named_values.h"
 #include "sequences/experiments/renderer/plots.h"
 #include "sequences/experiments/renderer/sheets.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
+#include "sequences/results/settings_json.h"
 
 namespace talisman::sequences {
 namespace {
@@ -24,7 +25,7 @@ double drawn(const Measured& m) {
   return m.per_frame(m.counters.*Field);
 }
 
-constexpr Column<Measured> kMeasured[] = {
+constexpr NamedValue<Measured> kMeasured[] = {
     {"renders", [](const Measured& m) { return m.per_frame(m.renders); }},
     {"polygons", [](const Measured& m) { return m.per_frame(m.polygons); }},
     {"sprite_pixels", [](const Measured& m) { return m.per_frame(m.pixels); }},
@@ -50,7 +51,7 @@ constexpr Column<Measured> kMeasured[] = {
     {"wall_cpu_spread_ms", [](const Measured& m) { return m.cpu.spread_ms; }},
 };
 
-constexpr Column<PictureError> kError[] = {
+constexpr NamedValue<PictureError> kError[] = {
     {"psnr_db", [](const PictureError& e) { return e.quality.psnr_db; }},
     {"ssim", [](const PictureError& e) { return e.quality.ssim; }},
     {"flip", [](const PictureError& e) { return e.quality.flip; }},
@@ -58,7 +59,7 @@ constexpr Column<PictureError> kError[] = {
     {"rms_code_values", [](const PictureError& e) { return e.rms_code_values; }},
 };
 
-constexpr Column<RungResult> kRung[] = {
+constexpr NamedValue<RungResult> kRung[] = {
     {"alone_psnr_db", [](const RungResult& r) { return r.alone.quality.psnr_db; }},
     {"alone_flip", [](const RungResult& r) { return r.alone.quality.flip; }},
     {"work", [](const RungResult& r) { return r.work; }},
@@ -274,6 +275,7 @@ std::string json_of(const RendererReport& report) {
   const Json json = {{"schema", "talisman.renderer/1"},
                      {"sequence", report.sequence},
                      {"display_px", {report.display_px.x, report.display_px.y}},
+                     {"settings_given", json_of(report.given)},
                      {"rounds", report.rounds},
                      {"frames", report.knobs.frames},
                      {"truth", truth_in_words()},

@@ -175,6 +175,8 @@ TEST(FactoringFiles, AllAreThereAndSayWhatWasMeasured) {
        "factoring-prediction.svg", "factoring-prediction.csv", "factoring-losses.svg"});
   const nlohmann::json json = nlohmann::json::parse(folder.read("factoring.json"));
   EXPECT_EQ(json["schema"], "talisman.factoring/1");
+  EXPECT_EQ(json["settings_given"]["geometric_px"], full_report().given.regulator.thresholds.geometric_px);
+  EXPECT_GT(json["settings_given"].size(), 20u);
   EXPECT_EQ(json["display_px"], (nlohmann::json{160, 120}));
   EXPECT_EQ(json["pictures"].size(), kPictures.size());
   EXPECT_EQ(json["frame"]["values_beyond_bound"], 0);

@@ -73,6 +73,8 @@ TEST_F(RegulatorReportFiles, SamplesNameTheirLayerAndQuoteIt) {
 TEST_F(RegulatorReportFiles, JsonSaysWhatWasMeasured) {
   const nlohmann::json json = nlohmann::json::parse(json_of(report()));
   EXPECT_EQ(json["schema"], "talisman.regulator/1");
+  EXPECT_EQ(json["settings_given"]["geometric_px"], report().given.regulator.thresholds.geometric_px);
+  EXPECT_GT(json["settings_given"].size(), 20u);
   EXPECT_EQ(json["display_px"], (nlohmann::json{64, 48}));
   EXPECT_EQ(json["quality_every"], 6);
   EXPECT_EQ(json["settings"].size(), report().settings.size());

@@ -80,6 +80,8 @@ TEST_F(RendererReportFiles, CsvOfEffectsHasALineWithAllAndOneWithoutEach) {
 TEST_F(RendererReportFiles, JsonSaysWhatWasMeasuredAndWhatWasNot) {
   const nlohmann::json json = nlohmann::json::parse(json_of(report()));
   EXPECT_EQ(json["schema"], "talisman.renderer/1");
+  EXPECT_EQ(json["settings_given"]["geometric_px"], report().given.regulator.thresholds.geometric_px);
+  EXPECT_GT(json["settings_given"].size(), 20u);
   EXPECT_EQ(json["display_px"], (nlohmann::json{64, 48}));
   EXPECT_THAT(json["truth"].get<std::string>(), HasSubstr("16 samples"));
   EXPECT_EQ(json["knobs"].size(), report().knobs.ladder.knobs.size());

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 
-#include "sequences/commands/nearest_word.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
@@ -33,25 +32,6 @@ TEST(Alternatives, TheLastIsJoinedByOr) {
 TEST(WordOf, ValuesWithoutAWordGetTheOther) {
   EXPECT_EQ(word_of(layers::OrderGroup{7}, kOrderGroupWords, "own"), "own");
   EXPECT_EQ(word_of(layers::OrderGroup::Background, kOrderGroupWords, "own"), "background");
-}
-
-TEST(EditDistance, CountsLettersAddedLeftOutChangedAndSwapped) {
-  EXPECT_EQ(edit_distance("render", "render"), 0);
-  EXPECT_EQ(edit_distance("rendr", "render"), 1);
-  EXPECT_EQ(edit_distance("rendder", "render"), 1);
-  EXPECT_EQ(edit_distance("rander", "render"), 1);
-  EXPECT_EQ(edit_distance("redner", "render"), 1);
-  EXPECT_EQ(edit_distance("", "plan"), 4);
-  EXPECT_EQ(edit_distance("kitten", "sitting"), 3);
-}
-
-TEST(NearestWord, IsEmptyWhereNothingIsNear) {
-  const std::vector<std::string> known{"render", "plan", "inspect"};
-  EXPECT_EQ(nearest_word("rendr", known), "render");
-  EXPECT_EQ(nearest_word("plna", known), "plan");
-  EXPECT_EQ(nearest_word("pln", known), "plan");
-  EXPECT_EQ(nearest_word("frobnicate", known), "");
-  EXPECT_EQ(nearest_word("", known), "");
 }
 
 }  // namespace
