@@ -211,7 +211,7 @@ TEST(ImportModel, GltfBringsMotionLayerTagAndLinearColour) {
   const layers::Material& gold = model.scene.materials[part.material];
   EXPECT_NEAR(gold.base_color.x, 0.225, 1e-6);  // 0.5 not decoded from sRGB, of which a metal keeps 0.45
   EXPECT_TRUE(gold.two_sided);
-  EXPECT_NEAR(gold.shininess, 30, 1e-3);     // 2 / 0.5⁴ − 2
+  EXPECT_NEAR(gold.shininess, 30, 1e-3);       // 2 / 0.5⁴ − 2
   EXPECT_NEAR(gold.specular.x, 0.9375, 1e-6);  // base · 2.5 · (1 − 0.5²)
 }
 
