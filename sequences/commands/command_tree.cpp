@@ -59,12 +59,12 @@ void CommandTree::add_inspect() {
   OptionGroup(*command, "Options")
       .option("sequence", inspect_.sequence, "name of a sequence, path of its YAML file, or path of a model")
       .flag("--json", inspect_.json, "print JSON")
-      .flag("--strict", inspect_.strict, "what the content has and the picture lacks is an error")
       .flag("--profile", inspect_.profile, "print the hardware profile with the source of each number")
       .flag("--order", inspect_.order,
             "the visibility order over time, what was merged and why, and what the sort cost")
       .option("--cycles", inspect_.cycles, "with --order: " + alternatives(kCyclesWords))
       .option("--compositor", inspect_.compositor, "with --order: " + alternatives(kCompositorWords));
+  add_content_options(*command, inspect_.content);
   command->callback([this] { exit_code_ = run_inspect(inspect_, std::cout); });
 }
 

@@ -142,7 +142,7 @@ int run_inspect(const InspectOptions& options, std::ostream& out) {
     if (options.profile) return kSuccess;
     throw InputError("inspect needs a SEQUENCE, a MODEL or --profile");
   }
-  const Sequence sequence = load_with_warnings(options.sequence, options.strict);
+  const Sequence sequence = load_with_warnings(options.sequence, options.content);
   out << (options.order  ? order_of(sequence, options)
           : options.json ? inspection_json(sequence)
                          : inspection_text(sequence));

@@ -7,6 +7,7 @@
 #include <iosfwd>
 #include <string>
 
+#include "sequences/commands/options.h"
 #include "sequences/content/sequence.h"
 
 namespace talisman::sequences {
@@ -15,7 +16,7 @@ struct InspectOptions {
   std::string sequence;            ///< name or path; may be empty where `profile` is asked for
   std::string cycles, compositor;  ///< of `order`; empty: the sequence's own
   bool json = false, profile = false, order = false;
-  bool strict = false;  ///< warnings of the content are errors
+  ContentWords content;
 };
 
 /// Throws InputError.

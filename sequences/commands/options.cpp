@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <tuple>
 #include <utility>
 
@@ -201,6 +202,7 @@ RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, boo
   options.overlay = line.overlay;
   options.quality = line.quality;
   options.resume = line.resume;
+  options.force = line.force;
   options.audit_every = line.audit.value_or(0);
   if (line.audit && *line.audit < 1)
     throw InputError("--audit is " + std::to_string(*line.audit) +
@@ -218,11 +220,24 @@ RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, boo
 
 }  // namespace
 
-Sequence load_with_warnings(const std::string& name_or_path, bool strict) {
-  Sequence sequence = load_sequence(name_or_path);
+ContentOptions content_options(const ContentWords& words) {
+  constexpr double kLargest = 1e9;
+  ContentOptions options;
+  std::error_code error;
+  if (!words.assets.empty() && !std::filesystem::is_directory(words.assets, error))
+    throw InputError("--assets is '" + words.assets + "', must be a folder that is there");
+  if (!words.assets.empty()) options.assets.push_back(words.assets);
+  if (words.exposure) options.exposure_lx = positive("--exposure", *words.exposure, kLargest);
+  if (words.turntable) options.turntable_s = positive("--turntable", *words.turntable, kLargest);
+  options.stage = !words.no_stage;
+  return options;
+}
+
+Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words) {
+  Sequence sequence = load_sequence(name_or_path, content_options(words));
   for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   for (const std::string& note : sequence.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
-  if (strict && !sequence.warnings.empty())
+  if (words.strict && !sequence.warnings.empty())
     throw InputError(std::to_string(sequence.warnings.size()) + " warnings, rule with --strict: none",
                      sequence.file);
   return sequence;

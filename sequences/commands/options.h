@@ -13,6 +13,14 @@
 
 namespace talisman::sequences {
 
+/// The options about content (ContentOptions), as they were typed.
+struct ContentWords {
+  std::string assets;  ///< a folder
+  std::optional<double> exposure, turntable;
+  bool no_stage = false;
+  bool strict = false;  ///< warnings of the content are errors
+};
+
 /// Every option is empty where it was not given.
 struct CommandLine {
   std::string sequence;
@@ -32,7 +40,8 @@ struct CommandLine {
   bool video = false, separate = false, overlay = false, quality = false, resume = false;
   std::optional<int> audit;  ///< every so many reuses; `talisman audit` writes no pictures of frames
   bool audit_alone = false;
-  bool strict = false;  ///< warnings of the content are errors
+  bool force = false;  ///< take a folder that holds other files
+  ContentWords content;
 };
 
 struct ResolvedRun {
@@ -40,8 +49,11 @@ struct ResolvedRun {
   RunOptions options;
 };
 
+/// Throws InputError that names option, value and rule.
+ContentOptions content_options(const ContentWords& words);
+
 /// Reads the sequence and says its warnings on stderr, "warning: " before each. Throws InputError.
-Sequence load_with_warnings(const std::string& name_or_path, bool strict = false);
+Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words = {});
 
 /// Checks every value and joins it with the sequence's defaults. Throws InputError that names option, value
 /// and rule, or the effect that the run calls for and this build lacks.

@@ -23,7 +23,7 @@ void add_run(CLI::App& command, CommandLine& line) {
       .option("--size", line.size, "display, WxH pixels")
       .option("--threads", line.threads, "worker threads; 0: all cores. The bytes do not depend on it")
       .option("--progress", line.progress, kProgressMeaning)
-      .flag("--strict", line.strict, "what the content has and the picture lacks is an error");
+      .flag("--force", line.force, "write into --out though it holds files that are not of a run");
 }
 
 void add_policy(CLI::App& command, CommandLine& line) {
@@ -118,6 +118,7 @@ void add_decisions(CLI::App& command, CommandLine& line) {
 
 void add_run_options(CLI::App& command, CommandLine& line) {
   add_run(command, line);
+  add_content_options(command, line.content);
   add_decisions(command, line);
 }
 
@@ -127,6 +128,18 @@ void add_audit_options(CLI::App& command, CommandLine& line) {
       .option("--shading", line.shading, alternatives(kShadingWords))
       .option("--resolution", line.resolution, "sprite texels per display pixel, each axis")
       .option("--compression", line.compression, "keep sprites compressed: quality 1 to 100, 0: none");
+}
+
+void add_content_options(CLI::App& command, ContentWords& words) {
+  OptionGroup(command, "Content")
+      .flag("--strict", words.strict, "what the content has and the picture lacks is an error")
+      .option("--assets", words.assets, "a folder in which files that models name may lie, too")
+      .option(
+          "--exposure", words.exposure,
+          "illuminance that shows 1 on a white surface that faces the light: lux in models, 1 in sequences")
+      .option("--turntable", words.turntable,
+              "seconds for one turn of the orbiting camera (20; sequences: 5)")
+      .flag("--no-stage", words.no_stage, "a bare model stands before black, on no ground");
 }
 
 void add_picture_options(CLI::App& command, CommandLine& line) { add_pictures(command, line); }

@@ -16,6 +16,8 @@ namespace talisman::sequences {
 
 /// The sequence and the options of `plan`, which `render` has too. `line` must live as long as `command`.
 void add_run_options(CLI::App& command, CommandLine& line);
+/// Those about content, which every command has that opens it.
+void add_content_options(CLI::App& command, ContentWords& words);
 /// The further options of `render`.
 void add_audit_options(CLI::App& command, CommandLine& line);
 void add_picture_options(CLI::App& command, CommandLine& line);

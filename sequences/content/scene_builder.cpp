@@ -8,16 +8,12 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "sequences/content/default_view.h"
 #include "sequences/import/texture_io.h"
 
 namespace talisman::sequences {
 
 namespace {
-
-constexpr double kOrbitTurn_s = 5;  // one turn of the orbiting camera: 120 frames at 24 per second
-constexpr double kOrbitElevation_rad = 0.3;
-constexpr double kOrbitFov_rad = 0.7;
-constexpr double kOrbitRoom = 1.08;  // the sphere around all parts fills the picture but for this
 
 int add_node(layers::Scene& scene, const std::string& name, int parent, const layers::Transform& local = {}) {
   scene.nodes.push_back({name, parent, local});
@@ -119,8 +115,8 @@ layers::Transform fitting(const ModelRecipe& recipe, const layers::Scene& model)
   return fit;
 }
 
-void add_model(BuiltScene& built, const ModelRecipe& recipe) {
-  const ImportedModel model = import_model(recipe.file);
+void add_model(BuiltScene& built, const ModelRecipe& recipe, const std::vector<std::string>& assets) {
+  const ImportedModel model = import_model(recipe.file, {}, assets);
   for (const std::string& warning : model.warnings) built.warnings.push_back(recipe.file + ": " + warning);
   append(built.files, files_read(model));
   const SharedContent content = add_content(built.scene, model.scene, recipe.two_sided);
@@ -192,65 +188,6 @@ void add_lights(BuiltScene& built, const std::vector<LightRecipe>& recipes) {
   }
 }
 
-// --- Where a file has no camera and no light ---
-
-void add_orbit(layers::Scene& scene) {
-  const layers::WorldBounds bounds = bounds_of_scene(scene);
-  const layers::dvec3 center = bounds.empty() ? layers::dvec3(0) : 0.5 * (bounds.lo + bounds.hi);
-  const double found = bounds.empty() ? 0 : 0.5 * glm::length(bounds.hi - bounds.lo);
-  const double radius = found > 0 ? found : 1;
-  const double distance = kOrbitRoom * radius / std::sin(kOrbitFov_rad / 2);
-  layers::Transform pivot, arm;
-  pivot.translation = center;
-  arm.rotation = glm::angleAxis(-kOrbitElevation_rad, layers::dvec3(1, 0, 0));
-  arm.translation = arm.rotation * layers::dvec3(0, 0, distance);
-  const int pivot_node = add_node(scene, "orbit", -1, pivot);
-  layers::Camera camera;
-  camera.name = "orbit";
-  camera.node = add_node(scene, "orbit camera", pivot_node, arm);
-  camera.fov_y_rad = kOrbitFov_rad;
-  camera.near_m = 0.5 * (distance - radius);
-  camera.far_m = 2 * (distance + radius);
-  scene.tracks.push_back({pivot_node, layers::SpinTrack{{0, 1, 0}, 2 * M_PI / kOrbitTurn_s}});
-  scene.cameras.push_back(camera);
-}
-
-void add_daylight(layers::Scene& scene) {
-  layers::Light sun, ambient;
-  sun.name = "sun";
-  sun.kind = layers::Light::Kind::Directional;
-  sun.direction = {-0.45, -0.75, -0.5};
-  sun.color = layers::vec3(0.85f);
-  ambient.name = "ambient";
-  ambient.kind = layers::Light::Kind::Ambient;
-  ambient.color = layers::vec3(0.25f);
-  scene.lights.insert(scene.lights.end(), {ambient, sun});
-}
-
-}  // namespace
-
-layers::WorldBounds bounds_of_scene(const layers::Scene& scene) {
-  constexpr int kSteps = 8;
-  layers::WorldBounds bounds;
-  const double duration = scene.duration_s();
-  for (int k = 0; k <= (duration > 0 ? kSteps : 0); ++k) {
-    const layers::SceneFrame frame = scene.at(duration * k / kSteps);
-    for (const layers::Part& part : scene.parts)
-      for (const layers::dvec3& p : layers::world_positions(frame, part)) {
-        bounds.lo = glm::min(bounds.lo, p);
-        bounds.hi = glm::max(bounds.hi, p);
-      }
-  }
-  return bounds;
-}
-
-void add_default_view(layers::Scene& scene) {
-  if (scene.cameras.empty()) add_orbit(scene);
-  if (scene.lights.empty()) add_daylight(scene);
-}
-
-namespace {
-
 /// Those of terrain and sky; a class of ground that no pixel has may name a texture that is not there.
 std::vector<std::string> files_of(const SceneRecipe& recipe) {
   std::vector<std::string> files;
@@ -273,10 +210,11 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   if (recipe.sky) add_sky(built.scene, *recipe.sky);
   if (recipe.terrain) add_terrain(built.scene, *recipe.terrain);
   for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);
-  for (const ModelRecipe& model : recipe.models) add_model(built, model);
+  for (const ModelRecipe& model : recipe.models) add_model(built, model, recipe.assets);
   if (recipe.camera) add_camera(built, *recipe.camera);
   add_lights(built, recipe.lights);
-  add_default_view(built.scene);
+  add_default_view(built.scene, recipe.turntable_s);
+  for (layers::Light& light : built.scene.lights) light.color /= static_cast<float>(recipe.exposure_lx);
   return built;
 }
 

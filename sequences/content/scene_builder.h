@@ -23,15 +23,8 @@ struct BuiltScene {
 };
 
 /// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of
-/// `add_default_view`; cameras and lights inside its models are not used. Throws InputError for an asset that
+/// default_view.h; cameras and lights inside its models are not used. Throws InputError for an asset that
 /// cannot be read, a name that is given twice and a carrier that is not there.
 BuiltScene build_scene(const SceneRecipe& recipe);
-
-/// An orbit around all parts (one turn in 5 s, seen slightly from above) if there is no camera; a sun and
-/// ambient light if there is no light. Any unit scale is framed.
-void add_default_view(layers::Scene& scene);
-
-/// Bounds of all parts over the scene's duration (sampled at 9 times).
-layers::WorldBounds bounds_of_scene(const layers::Scene& scene);
 
 }  // namespace talisman::sequences

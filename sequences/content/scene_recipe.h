@@ -49,9 +49,12 @@ struct SceneRecipe {
   std::optional<CameraRecipe> camera;
   std::vector<LightRecipe> lights;
   layers::vec3 background{0, 0, 0};
+  std::vector<std::string> assets;  ///< folders in whose trees files that models name may lie
+  double exposure_lx = 1;           ///< by which all lights are divided
+  double turntable_s = 5;           ///< one turn of the orbiting camera, where there is no other
 };
 
-/// The keys background, shapes, models, terrain, sky, camera and lights of a sequence.
+/// The keys background, shapes, models, assets, terrain, sky, camera, turntable, lights and exposure of a sequence.
 const Table<SceneRecipe>& scene_keys();
 
 }  // namespace talisman::sequences

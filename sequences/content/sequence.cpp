@@ -7,6 +7,7 @@
 #include <map>
 
 #include "sequences/content/asset_paths.h"
+#include "sequences/content/default_view.h"
 #include "sequences/content/scene_builder.h"
 #include "sequences/content/sequence_file.h"
 
@@ -14,8 +15,8 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr int kOrbitFrames = 120;   // one turn, see add_default_view
-constexpr double kMaxModel_s = 20;  // longer animations are cut
+constexpr double kMaxModel_s = 20;   // longer animations are cut
+constexpr double kTurntable_s = 20;  // one turn around a bare model
 
 bool is_yaml(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
@@ -77,8 +78,18 @@ void finish(Sequence& sequence, BuiltScene built, std::vector<layers::LayerSpec>
   throw InputError(defect, file.settings.file);
 }
 
-Sequence load_yaml(const std::string& path) {
+/// Folders of the sequence and of the command line.
+void apply(const ContentOptions& options, const std::string& path, SceneRecipe& recipe) {
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  recipe.assets.insert(recipe.assets.begin(), folder.empty() ? "." : folder);
+  recipe.assets.insert(recipe.assets.end(), options.assets.begin(), options.assets.end());
+  if (options.exposure_lx) recipe.exposure_lx = *options.exposure_lx;
+  if (options.turntable_s) recipe.turntable_s = *options.turntable_s;
+}
+
+Sequence load_yaml(const std::string& path, const ContentOptions& options) {
   SequenceFile file = read_sequence_file(path);
+  apply(options, path, file.recipe);
   BuiltScene built = build_scene(file.recipe);
   if (const std::string defect = layers::first_defect(built.scene); !defect.empty())
     throw InputError(defect, path);
@@ -88,6 +99,7 @@ Sequence load_yaml(const std::string& path) {
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   if (specs.empty()) specs = specs_of_model(built.scene, built.layer_tags);
   Sequence sequence = std::move(file.settings);
+  sequence.content = options;
   finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) {
     file.settings.file = path;
@@ -97,16 +109,33 @@ Sequence load_yaml(const std::string& path) {
   return sequence;
 }
 
-Sequence load_model(const std::string& path) {
-  ImportedModel model = import_model(path);
+/// The lights of the file as they are under another exposure.
+void expose(ImportedModel& model, double exposure_lx) {
+  for (layers::Light& light : model.scene.lights)
+    light.color *= static_cast<float>(model.exposure_lx / exposure_lx);
+  if (!model.scene.lights.empty())
+    model.notes.push_back("the exposure that was asked for, " + shown(exposure_lx) +
+                          " lx, takes the place of the file's");
+}
+
+/// As many as the animation lasts, else one turn of the camera.
+int frames_of_model(const layers::Scene& scene, double turntable_s, double fps) {
+  const double duration = std::min(scene.duration_s(), kMaxModel_s);
+  const double frames = std::round((duration > 0 ? duration : turntable_s) * fps);
+  return static_cast<int>(std::clamp<double>(frames, 1, kLongestRun_frames));
+}
+
+Sequence load_model(const std::string& path, const ContentOptions& options) {
+  ImportedModel model = import_model(path, {}, options.assets);
   Sequence sequence;
+  sequence.content = options;
+  const double turntable_s = options.turntable_s.value_or(kTurntable_s);
   sequence.name = std::filesystem::path(path).stem().string();
   sequence.file = path;
-  const double duration = std::min(model.scene.duration_s(), kMaxModel_s);
-  sequence.frames =
-      duration > 0 ? std::max(1, static_cast<int>(std::lround(duration * sequence.fps))) : kOrbitFrames;
-  add_default_view(model.scene);
+  sequence.frames = frames_of_model(model.scene, turntable_s, sequence.fps);
+  if (options.exposure_lx) expose(model, *options.exposure_lx);
   std::vector<layers::LayerSpec> specs = specs_of_model(model.scene, model.layer_tags);
+  add_model_view(model.scene, specs, {turntable_s, options.stage, options.exposure_lx.value_or(1)});
   sequence.notes = std::move(model.notes);
   BuiltScene built;
   built.scene = std::move(model.scene);
@@ -119,14 +148,15 @@ Sequence load_model(const std::string& path) {
 
 }  // namespace
 
-Sequence load_sequence(const std::string& name_or_path) {
+Sequence load_sequence(const std::string& name_or_path, const ContentOptions& options) {
   // A name means the same in every working directory; a file that happens to have it is ./NAME.
-  if (const std::string shipped = sequence_file_of(name_or_path); !shipped.empty()) return load_yaml(shipped);
+  if (const std::string shipped = sequence_file_of(name_or_path); !shipped.empty())
+    return load_yaml(shipped, options);
   std::error_code error;
   if (!std::filesystem::is_regular_file(name_or_path, error))
     throw InputError("'" + name_or_path +
                      "' is no sequence and no file; sequences are: " + joined(known_sequences()));
-  return is_yaml(name_or_path) ? load_yaml(name_or_path) : load_model(name_or_path);
+  return is_yaml(name_or_path) ? load_yaml(name_or_path, options) : load_model(name_or_path, options);
 }
 
 std::vector<std::string> known_sequences() { return sequence_names(); }

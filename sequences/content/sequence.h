@@ -2,8 +2,8 @@
 #pragma once
 
 /// A sequence: a scene, its layers and how it is filmed. It is read from a YAML file under sequences/<name>/
-/// (or the user's own) or made up around a bare model file (one layer per moving or top-level node, an
-/// orbiting camera if it has none).
+/// (or the user's own) or made up around a bare model file (one layer per moving or top-level node, and what
+/// default_view.h adds).
 
 #include <memory>
 #include <optional>
@@ -22,6 +22,16 @@ namespace talisman::sequences {
 
 /// Some eleven hours at 24 frames a second.
 inline constexpr int kLongestRun_frames = 1'000'000;
+
+/// What is said on the command line about content. What is said goes before the keys of a sequence file.
+struct ContentOptions {
+  std::vector<std::string> assets = {};  ///< folders in whose trees files that models name may lie
+  std::optional<double> exposure_lx =
+      {};  ///< > 0; the illuminance that shows 1 on white that faces the light
+  std::optional<double> turntable_s = {};  ///< > 0; one turn of the orbiting camera
+  bool stage = true;                       ///< bare models stand on a ground, before a backdrop
+  bool operator==(const ContentOptions&) const = default;
+};
 
 struct Sequence {
   std::string name;  ///< "canyon", or the model's file name without extension
@@ -49,12 +59,13 @@ struct Sequence {
   std::string warp = "aff";               ///< curve name
   std::vector<std::string> warnings;      ///< missing textures and the like, one line each
   std::vector<std::string> notes;         ///< what was decided where the model leaves it open
+  ContentOptions content;                 ///< with which it was read
 };
 
 /// Reads a sequence by name ("canyon", also "canyon/background" for a variant file
 /// sequences/canyon/background.yaml), by the path of a YAML file, or a model by the path of any file the
 /// importer reads. Throws InputError.
-Sequence load_sequence(const std::string& name_or_path);
+Sequence load_sequence(const std::string& name_or_path, const ContentOptions& options = {});
 
 /// Names of the sequences that ship with the tool.
 std::vector<std::string> known_sequences();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/value_format.h"
 
+#include <filesystem>
+
 #include <glm/geometric.hpp>
 #include <glm/trigonometric.hpp>
 
@@ -70,6 +72,22 @@ Format<std::vector<std::string>> texts(std::size_t at_least) {
 Format<std::string> asset() {
   return {with_rule({.kind = ValueType::Kind::Text}, "a file that is there"),
           [](const YamlValue& value) { return resolve_asset(value.text(), value.file(), value.line()); }};
+}
+
+Format<std::vector<std::string>> folders() {
+  const char* rule = "folders that are there";
+  const auto read = [rule](const YamlValue& list) {
+    std::vector<std::string> folders;
+    for (const YamlValue& item : list.items(0)) {
+      // An absolute path stays as it is.
+      const std::filesystem::path folder = std::filesystem::path(item.file()).parent_path() / item.text();
+      std::error_code error;
+      if (!std::filesystem::is_directory(folder, error)) item.fail(rule);
+      folders.push_back(folder.string());
+    }
+    return folders;
+  };
+  return {with_rule(list_type({.kind = ValueType::Kind::Text}, 0), rule), read};
 }
 
 Format<glm::dvec3> vector() {

@@ -30,10 +30,11 @@ Format<int> whole(int low, int high);
 Format<bool> truth();
 Format<std::string> text();
 Format<std::vector<std::string>> texts(std::size_t at_least);
-Format<std::string> asset();     ///< the path of a file that is there (asset_paths.h)
-Format<glm::dvec3> vector();     ///< [x, y, z]
-Format<glm::dvec3> direction();  ///< likewise, not zero
-Format<glm::dvec3> sides();      ///< likewise, each above 0
+Format<std::string> asset();                 ///< the path of a file that is there (asset_paths.h)
+Format<std::vector<std::string>> folders();  ///< that are there, relative to the file
+Format<glm::dvec3> vector();                 ///< [x, y, z]
+Format<glm::dvec3> direction();              ///< likewise, not zero
+Format<glm::dvec3> sides();                  ///< likewise, each above 0
 Format<glm::dvec2> pair(const Range& range);
 Format<glm::dvec2> interval(const Range& range);  ///< a pair, the first below the second
 Format<glm::ivec2> whole_pair(int low, int high);

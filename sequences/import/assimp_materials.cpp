@@ -8,6 +8,7 @@
 
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/limits.h"
+#include "sequences/import/pbr_surface.h"
 #include "sequences/import/picture_kind.h"
 #include "sequences/import/texture_io.h"
 #include "sequences/import/texture_search.h"
@@ -41,7 +42,7 @@ layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
 layers::Texture read_reference(Import& import, const std::string& reference) {
   if (const aiTexture* embedded = import.from.GetEmbeddedTexture(reference.c_str()))
     return read_embedded(*embedded, reference);
-  const std::string file = find_texture(import.path, reference, import.files);
+  const std::string file = find_texture(import.place, reference, import.files);
   if (file.empty()) throw InputError("is missing");
   import.files.look_for(file);
   layers::Texture texture = read_texture(file);
@@ -87,10 +88,12 @@ T property(const aiMaterial& from, const char* key, unsigned type, unsigned inde
 
 /// Roughness and metalness as the Blinn-Phong lobe of about the same width; see model_import.h.
 void import_pbr_gloss(const aiMaterial& from, layers::Material& to) {
-  const float roughness = clean(property(from, AI_MATKEY_ROUGHNESS_FACTOR, 1.0f), 0.05f, 1, 1);
+  const float roughness = clean(property(from, AI_MATKEY_ROUGHNESS_FACTOR, 1.0f), 0, 1, 1);
   const float metallic = clean(property(from, AI_MATKEY_METALLIC_FACTOR, 0.0f), 0, 1, 0);
-  to.specular = glm::mix(layers::vec3(kDielectric), to.base_color, metallic) * (1 - roughness);
-  to.shininess = std::min(kMaxShininess, 2 / std::pow(roughness, 4.0f) - 2);
+  const PbrSurface surface = pbr_surface(to.base_color, layers::vec3(kDielectric), metallic, roughness);
+  to.base_color = surface.color;
+  to.specular = surface.specular;
+  to.shininess = surface.shininess;
 }
 
 void import_phong_gloss(const aiMaterial& from, layers::Material& to) {

@@ -168,6 +168,7 @@ void import_lights(Import& import) {
   for (const layers::Light& light : lights)
     for (int k = 0; k < 3; ++k) brightest = std::max(brightest, light.color[k]);
   for (layers::Light& light : lights) light.color /= brightest;
+  import.model.exposure_lx = brightest;
 }
 
 void import_cameras(Import& import) {

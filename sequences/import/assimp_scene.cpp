@@ -86,7 +86,7 @@ std::string telling_name(const Import& import, const aiNode& node) {
     const std::string mesh = text(import.from.mMeshes[node.mMeshes[0]]->mName);
     if (!tells_nothing(mesh)) return mesh;
   }
-  return node.mParent ? own : std::filesystem::path(import.path).stem().string();
+  return node.mParent ? own : std::filesystem::path(import.place.path).stem().string();
 }
 
 void import_nodes(Import& import, const aiNode* node, int parent, const std::string& parent_path, int depth) {
@@ -251,7 +251,7 @@ int import_frame(Import& import, const FileFrame& frame) {
       frame.transform.translation == own.translation)
     return -1;
   import.model.scene.nodes.push_back(
-      {std::filesystem::path(import.path).stem().string(), -1, frame.transform});
+      {std::filesystem::path(import.place.path).stem().string(), -1, frame.transform});
   return 0;
 }
 
@@ -267,18 +267,17 @@ const aiScene* read_file(Assimp::Importer& importer, const std::string& path,
 
 }  // namespace
 
-ImportedModel read_with_assimp(const std::string& path) {
+ImportedModel read_with_assimp(const ModelPlace& place) {
   FileUses files;
   files.add_code();
   Assimp::Importer importer;
   set_options(importer);
-  importer.SetIOHandler(new RecordedFiles(files));  // it belongs to the importer
-  const layers::dvec3 origin = use_local_origin(importer, path, files);
+  importer.SetIOHandler(new RecordedFiles(place, files));  // it belongs to the importer
   std::vector<std::string> losses;
-  const aiScene* from = read_file(importer, path, losses);
-  Import import(*from, path, files);
+  const aiScene* from = read_file(importer, place.path, losses);
+  Import import(*from, place, files);
   import.model.warnings = losses;
-  import_nodes(import, from->mRootNode, import_frame(import, file_frame(*from, origin)), "", 0);
+  import_nodes(import, from->mRootNode, import_frame(import, file_frame(*from)), "", 0);
   import_materials(import);
   import_meshes(import);
   drop_empty_parts(import.model.scene);
@@ -287,6 +286,19 @@ ImportedModel read_with_assimp(const std::string& path) {
   import_cameras(import);
   if (import.model.scene.parts.empty()) throw InputError("has no triangles, rule: a model has at least one");
   import.model.files = files.take();
+  return std::move(import.model);
+}
+
+ImportedModel with_assimp_materials(const ModelPlace& place, const std::string& content, FileUses& files,
+                                    const std::function<void(const aiScene&)>& look) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new ReplacedModel(place, files, content));
+  const aiScene* from = importer.ReadFile(place.path, 0);
+  if (!from || !from->mRootNode)
+    throw InputError(std::string("its materials cannot be read: ") + importer.GetErrorString());
+  Import import(*from, place, files);
+  import_materials(import);
+  look(*from);
   return std::move(import.model);
 }
 

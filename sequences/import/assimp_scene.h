@@ -5,6 +5,7 @@
 /// links assimp.
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -12,18 +13,23 @@
 #include <assimp/scene.h>
 
 #include "sequences/import/model_import.h"
+#include "sequences/import/texture_search.h"
 
 namespace talisman::sequences {
 
 /// Reads the file. Throws InputError without the file's name, which the parent puts in front.
-ImportedModel read_with_assimp(const std::string& path);
+ImportedModel read_with_assimp(const ModelPlace& place);
+
+/// The materials of a model whose file holds `content`, which assimp can read; `look` may look at the rest of what
+/// assimp made of it. Throws InputError likewise.
+ImportedModel with_assimp_materials(const ModelPlace& place, const std::string& content, FileUses& files,
+                                    const std::function<void(const aiScene&)>& look);
 
 /// What the steps of one import have in common.
 struct Import {
-  Import(const aiScene& scene, std::string file, FileUses& uses)
-      : from(scene), path(std::move(file)), files(uses) {}
+  Import(const aiScene& scene, const ModelPlace& of, FileUses& uses) : from(scene), place(of), files(uses) {}
   const aiScene& from;
-  std::string path;
+  const ModelPlace& place;
   FileUses& files;
   ImportedModel model;
   std::map<const aiNode*, int> node_of;

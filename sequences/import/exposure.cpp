@@ -55,6 +55,7 @@ void expose_lights(ImportedModel& model) {
   for (const layers::LightState& light : frame.lights) most = std::max(most, illuminance(light, parts));
   if (!(most > 0 && std::isfinite(1 / most))) return;
   for (layers::Light& light : scene.lights) light.color *= static_cast<float>(1 / most);
+  model.exposure_lx = most;
   char text[96];
   std::snprintf(text, sizeof text, "the largest illuminance, %.4g lx, is shown as 1 on white", most);
   model.notes.push_back(text);

@@ -8,7 +8,8 @@
 ///   E = lux of a directional light;  of a point or spot  I · falloff(d),  d from the lamp to the nearest part's
 ///   bounds, at least 0.1 of that part's radius
 ///
-/// All lights are divided by it, so their ratios stay.
+/// All lights are divided by it, so their ratios stay. The key or option `exposure` of whoever shows the file puts
+/// another illuminance in its place.
 
 #include "sequences/import/model_import.h"
 

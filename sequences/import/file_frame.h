@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// In which axes, units and around which origin does a file give its places?
+/// In which axes and units does a file give its places?
 ///
 /// FBX says its up, front and right axes and its unit in centimetres (UnitScaleFactor); assimp hands them on
-/// without applying them. Files of surveys give places of 10⁶ m with sizes of 0.2 m, which no float holds: of an
-/// OBJ whose origin lies that far away the coordinates are read in double, a local origin is taken off before
-/// assimp reads them, and a node puts it back.
-
-#include <string>
+/// without applying them.
 
 #include <assimp/scene.h>
-#include <assimp/Importer.hpp>
 
 #include "layers/scene.h"
-#include "sequences/files/file_uses.h"
 
 namespace talisman::sequences {
 
@@ -23,12 +17,7 @@ struct FileFrame {
   layers::Transform transform;
 };
 
-/// Prepares `importer` to read the file around a local origin, which is returned; (0, 0, 0) where nothing is
-/// gained by it. Cost: of an OBJ file, one reading of its lines.
-/// What is opened is noted in `files`.
-layers::dvec3 use_local_origin(Assimp::Importer& importer, const std::string& path, FileUses& files);
-
-/// Axes and units by the scene's metadata; `origin` as above.
-FileFrame file_frame(const aiScene& scene, const layers::dvec3& origin);
+/// Axes and units by the scene's metadata.
+FileFrame file_frame(const aiScene& scene);
 
 }  // namespace talisman::sequences

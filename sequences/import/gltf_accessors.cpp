@@ -59,25 +59,6 @@ double raw_number(int type, const std::uint8_t* from) {
   }
 }
 
-double number_at(const Layout& layout, const std::uint8_t* from) {
-  const double raw = raw_number(layout.type, from);
-  if (!layout.normalized) return raw;
-  switch (layout.type) {
-    case 5120:
-      return std::max(raw / 127, -1.0);
-    case 5121:
-      return raw / 255;
-    case 5122:
-      return std::max(raw / 32767, -1.0);
-    case 5123:
-      return raw / 65535;
-    case 5125:
-      return raw / 4294967295.0;
-    default:
-      return raw;
-  }
-}
-
 Layout layout_of(const Json& accessor) {
   struct Shape {
     const char* name;
@@ -117,7 +98,8 @@ void check_range(std::size_t bytes, std::size_t offset, std::size_t count, std::
 void read_element(const Layout& layout, const std::uint8_t* from, double* to) {
   for (int c = 0; c < layout.columns; ++c)
     for (int r = 0; r < layout.rows; ++r)
-      *to++ = number_at(layout, from + c * layout.column_bytes + r * layout.component_bytes);
+      *to++ = component_value(layout.type, layout.normalized,
+                              from + c * layout.column_bytes + r * layout.component_bytes);
 }
 
 std::size_t offset_of(const Json& object) {
@@ -159,7 +141,27 @@ void apply_sparse(GltfFile& file, const Json& sparse, const Layout& layout, Acce
 
 }  // namespace
 
+double component_value(int type, bool normalized, const std::uint8_t* from) {
+  const double raw = raw_number(type, from);
+  if (!normalized) return raw;
+  switch (type) {
+    case 5120:
+      return std::max(raw / 127, -1.0);
+    case 5121:
+      return raw / 255;
+    case 5122:
+      return std::max(raw / 32767, -1.0);
+    case 5123:
+      return raw / 65535;
+    case 5125:
+      return raw / 4294967295.0;
+    default:
+      return raw;
+  }
+}
+
 Accessed read_accessor(GltfFile& file, int index) {
+  if (const auto found = file.decoded.find(index); found != file.decoded.end()) return found->second;
   const Json& accessor = item_of(file, "accessors", index);
   const Layout layout = layout_of(accessor);
   Accessed result;

@@ -16,15 +16,12 @@
 
 namespace talisman::sequences {
 
-struct Accessed {
-  int components = 1;
-  std::size_t count = 0;
-  std::vector<double> values;  ///< components · count
-  double at(std::size_t element, int component) const { return values[element * components + component]; }
-};
-
-/// Throws InputError for anything that does not fit. Cost: O(count).
+/// What stands in GltfFile::decoded, or what the accessor's view holds. Throws InputError for anything that does not
+/// fit. Cost: O(count).
 Accessed read_accessor(GltfFile& file, int index);
+
+/// The number at `from` of a component type, normalised if wished.
+double component_value(int type, bool normalized, const std::uint8_t* from);
 
 /// The same, with a number of components that must be one of two.
 Accessed read_accessor(GltfFile& file, int index, const char* what, int components, int or_components = 0);

@@ -10,7 +10,7 @@
 #include <limits>
 #include <optional>
 
-#include "sequences/import/texture_search.h"
+#include "sequences/import/gltf_compression.h"
 
 namespace talisman::sequences {
 
@@ -19,9 +19,10 @@ namespace {
 constexpr std::uint32_t kGlbMagic = 0x46546c67, kJsonChunk = 0x4e4f534a, kBinaryChunk = 0x004e4942;
 
 constexpr std::array kReadExtensions = {
-    "KHR_materials_unlit",    "KHR_texture_transform", "KHR_materials_emissive_strength",
-    "KHR_materials_specular", "KHR_materials_ior",     "KHR_materials_pbrSpecularGlossiness",
-    "KHR_lights_punctual",    "KHR_mesh_quantization", "EXT_texture_webp"};
+    "KHR_materials_unlit",     "KHR_texture_transform",     "KHR_materials_emissive_strength",
+    "KHR_materials_specular",  "KHR_materials_ior",         "KHR_materials_pbrSpecularGlossiness",
+    "KHR_lights_punctual",     "KHR_mesh_quantization",     "EXT_texture_webp",
+    "EXT_meshopt_compression", "KHR_draco_mesh_compression"};
 
 std::vector<std::uint8_t> bytes_of_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
@@ -144,8 +145,6 @@ const std::vector<std::uint8_t>& bytes_of_buffer(GltfFile& file, int index) {
   if (!is_new) return entry->second;
   const Json& buffer = item_of(file, "buffers", index);
   const std::string uri = text_of(buffer, "uri");
-  if (uri.empty() && extension_of(buffer, "EXT_meshopt_compression"))
-    throw InputError("needs EXT_meshopt_compression, which is not read");
   entry->second = uri.empty() ? file.binary : bytes_of_uri(file, uri);
   const double length = number_of(buffer, "byteLength", 0);
   if (length > static_cast<double>(entry->second.size()))
@@ -169,11 +168,11 @@ std::vector<std::string> gltf_extensions_not_read(const GltfFile& file) {
   return names;
 }
 
-GltfFile read_gltf_file(const std::string& path) {
+GltfFile read_gltf_file(const ModelPlace& place) {
   GltfFile file;
-  file.path = path;
-  file.uses.look_for(path);
-  const std::vector<std::uint8_t> bytes = bytes_of_file(path);
+  file.place = place;
+  file.uses.look_for(place.path);
+  const std::vector<std::uint8_t> bytes = bytes_of_file(place.path);
   if (bytes.size() >= 12 && word_at(bytes, 0) == kGlbMagic)
     read_glb(bytes, file);
   else
@@ -269,10 +268,10 @@ const Json& item_of(const GltfFile& file, const char* kind, int index) {
   return items[index];
 }
 
-std::span<const std::uint8_t> bytes_of_view(GltfFile& file, int index) {
-  const Json& view = item_of(file, "bufferViews", index);
-  if (extension_of(view, "EXT_meshopt_compression"))
-    throw InputError("needs EXT_meshopt_compression, which is not read");
+namespace {
+
+/// The bytes that `view`, or its extension, names.
+std::span<const std::uint8_t> bytes_in_buffer(GltfFile& file, const Json& view, int index) {
   const std::vector<std::uint8_t>& buffer = bytes_of_buffer(file, index_of(view, "buffer"));
   const std::size_t offset = static_cast<std::size_t>(std::max(0, index_of(view, "byteOffset")));
   const std::size_t length = static_cast<std::size_t>(std::max(0, index_of(view, "byteLength")));
@@ -281,6 +280,19 @@ std::span<const std::uint8_t> bytes_of_view(GltfFile& file, int index) {
                      std::to_string(offset + length) + ", rule: inside its buffer of " +
                      std::to_string(buffer.size()));
   return {buffer.data() + offset, length};
+}
+
+}  // namespace
+
+std::span<const std::uint8_t> bytes_of_view(GltfFile& file, int index) {
+  const Json& view = item_of(file, "bufferViews", index);
+  const Json* meshopt = extension_of(view, "EXT_meshopt_compression");
+  if (!meshopt) return bytes_in_buffer(file, view, index);
+  const auto [entry, is_new] = file.views.try_emplace(index);
+  if (is_new)
+    entry->second = decoded_meshopt(*meshopt, bytes_in_buffer(file, *meshopt, index),
+                                    static_cast<std::size_t>(std::max(0, index_of(view, "byteLength"))));
+  return entry->second;
 }
 
 std::string percent_decoded(const std::string& uri) {
@@ -296,7 +308,7 @@ std::string percent_decoded(const std::string& uri) {
 
 std::vector<std::uint8_t> bytes_of_uri(GltfFile& file, const std::string& uri) {
   if (uri.rfind("data:", 0) == 0) return bytes_of_data_uri(uri);
-  const std::string found = find_file(file.path, percent_decoded(uri), file.uses);
+  const std::string found = find_file(file.place, percent_decoded(uri), file.uses);
   if (found.empty()) throw InputError("'" + uri + "' is missing");
   return bytes_of_file(found);
 }

@@ -17,22 +17,33 @@
 
 #include "sequences/files/errors.h"
 #include "sequences/files/file_uses.h"
+#include "sequences/import/texture_search.h"
 
 namespace talisman::sequences {
 
 using Json = nlohmann::json;
 
+/// The numbers of an accessor (gltf_accessors.h).
+struct Accessed {
+  int components = 1;
+  std::size_t count = 0;
+  std::vector<double> values;  ///< components · count
+  double at(std::size_t element, int component) const { return values[element * components + component]; }
+};
+
 struct GltfFile {
-  std::string path;
+  ModelPlace place;
   Json json;
   std::vector<std::uint8_t> binary;                  ///< of a GLB
   std::map<int, std::vector<std::uint8_t>> buffers;  ///< those read so far
-  FileUses uses = {};                                ///< what was asked of the file system
+  std::map<int, std::vector<std::uint8_t>> views;    ///< those that had to be decoded, likewise
+  std::map<int, Accessed> decoded = {};  ///< accessors of the primitive at work that hold other content
+  FileUses uses = {};                    ///< what was asked of the file system
 };
 
 /// Reads and parses the file; refuses other versions than 2 and required extensions that are not in
 /// `gltf_extension_is_read`. Throws InputError without the file's name.
-GltfFile read_gltf_file(const std::string& path);
+GltfFile read_gltf_file(const ModelPlace& place);
 
 /// Is it a glTF 1 file, by the version of its GLB header or of its JSON?
 bool is_gltf1(const std::string& path);

@@ -3,11 +3,12 @@
 #include <cmath>
 #include <filesystem>
 
+#include "sequences/import/gltf_baked_maps.h"
 #include "sequences/import/gltf_scene.h"
-#include "sequences/import/limits.h"
+#include "sequences/import/pbr_surface.h"
 #include "sequences/import/picture_kind.h"
 #include "sequences/import/texture_io.h"
-#include "sequences/import/texture_search.h"
+#include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr int kNearest = 9728, kNearestMipNearest = 9984, kLinearMipNearest = 9985, kNearestMipLinear = 9986;
 constexpr int kLinear = 9729, kClampToEdge = 33071, kMirroredRepeat = 33648;
-constexpr double kLeastRoughness = 0.05;
+constexpr double kEvenRoughness = 0.02;  // standard deviation up to which a map counts as even
 
 layers::vec3 color_of(const std::vector<double>& c) {
   return {static_cast<float>(std::max(0.0, c[0])), static_cast<float>(std::max(0.0, c[1])),
@@ -59,7 +60,7 @@ layers::Texture read_image(GltfImport& import, int index) {
     const auto bytes = bytes_of_uri(import.file, uri);
     return read_texture_from_bytes(bytes, name, picture_extension(bytes));
   }
-  const std::string found = find_texture(import.file.path, percent_decoded(uri), import.file.uses);
+  const std::string found = find_texture(import.file.place, percent_decoded(uri), import.file.uses);
   if (found.empty()) throw InputError("is missing");
   layers::Texture texture = read_texture(found);
   texture.name = std::filesystem::path(found).filename().string();
@@ -121,15 +122,40 @@ class Textures {
     return entry->second = static_cast<int>(import_.model.scene.textures.size()) - 1;
   }
 
-  /// The mean of one channel, 0 … 1, as numbers and not as light; 1 where there is no texture.
-  double mean_of(const Json& info, int channel) {
+  struct Spread {
+    double mean = 1, deviation = 0;
+  };
+  /// Of one channel, 0 … 1, as numbers and not as light; even 1 where there is no texture.
+  Spread spread_of(const Json& info, int channel) {
+    const layers::Texture* texture = content_of(info);
+    if (!texture) return {};
+    double sum = 0, squares = 0;
+    for (std::size_t i = static_cast<std::size_t>(channel); i < texture->rgba.size(); i += 4) {
+      const double value = texture->rgba[i] / 255.0;
+      sum += value, squares += value * value;
+    }
+    const double n = static_cast<double>(texture->rgba.size()) / 4, mean = sum / n;
+    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
+  }
+  double mean_of(const Json& info, int channel) { return spread_of(info, channel).mean; }
+
+  /// As it was read; null: none, or none that can be read. Valid as long as this.
+  const layers::Texture* content_of(const Json& info) {
     const int index = index_of(info, "index");
-    if (index < 0) return 1;
+    if (index < 0) return nullptr;
     const layers::Texture& texture = read(index);
-    double sum = 0;
-    for (std::size_t i = static_cast<std::size_t>(channel); i < texture.rgba.size(); i += 4)
-      sum += texture.rgba[i];
-    return texture.rgba.empty() ? 1 : sum / 255 / (static_cast<double>(texture.rgba.size()) / 4);
+    return texture.rgba.empty() ? nullptr : &texture;
+  }
+
+  /// The colour texture with other maps in it (gltf_baked_maps.h), each combination once; -1: they change nothing.
+  int baked(const std::string& combination, bool opaque, const MapsToBake& maps) {
+    const auto [entry, is_new] = baked_.emplace(combination, -1);
+    if (!is_new) return entry->second;
+    layers::Texture texture = baked_maps(maps);
+    if (texture.rgba.empty()) return -1;
+    if (opaque) make_opaque(texture);
+    import_.model.scene.textures.push_back(std::move(texture));
+    return entry->second = static_cast<int>(import_.model.scene.textures.size()) - 1;
   }
 
  private:
@@ -140,18 +166,16 @@ class Textures {
   }
   GltfImport& import_;
   std::map<std::pair<int, bool>, int> found_;
+  std::map<std::string, int> baked_;
   std::map<int, layers::Texture> read_;
 };
 
-/// Roughness and metalness as the Blinn-Phong lobe of about the same width; see model_import.h.
-void set_gloss(double roughness, double metallic, const layers::vec3& dielectric, layers::Material& to) {
-  roughness = std::clamp(roughness, kLeastRoughness, 1.0);
-  metallic = std::clamp(metallic, 0.0, 1.0);
-  to.specular =
-      glm::mix(dielectric, to.base_color, static_cast<float>(metallic)) * static_cast<float>(1 - roughness);
-  to.shininess = static_cast<float>(std::min<double>(kMaxShininess, 2 / std::pow(roughness, 4.0) - 2));
-  if (to.shininess < 1)
-    to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
+/// The mean of what is seen of it, in linear light.
+layers::vec3 mean_color(const layers::Texture& texture) {
+  layers::vec3 sum(0);
+  for (std::size_t i = 0; i < texture.rgba.size(); i += 4)
+    for (int k = 0; k < 3; ++k) sum[k] += linear_from_srgb(static_cast<float>(texture.rgba[i + k]) / 255);
+  return sum / static_cast<float>(texture.rgba.size() / 4);
 }
 
 /// Reflectance at normal incidence of what is no metal: KHR_materials_ior, KHR_materials_specular.
@@ -212,11 +236,52 @@ class Reading {
   void read_metal(const Json& pbr) {
     read_base(pbr, "baseColorFactor", "baseColorTexture");
     const Json& map = object_of(pbr, "metallicRoughnessTexture");
-    if (!map.empty() && !to_.unlit)
-      import_.lacks("metallic-roughness maps are drawn as their mean", to_.name);
-    const double roughness = number_of(pbr, "roughnessFactor", 1) * textures_.mean_of(map, 1);
-    const double metallic = number_of(pbr, "metallicFactor", 1) * textures_.mean_of(map, 2);
-    set_gloss(roughness, metallic, dielectric_of(from_), to_);
+    if (to_.unlit) return;
+    const Textures::Spread roughness = textures_.spread_of(map, 1);
+    if (roughness.deviation > kEvenRoughness)
+      import_.lacks("roughness maps are drawn as their mean", to_.name);
+    const double metallic = std::clamp(number_of(pbr, "metallicFactor", 1), 0.0, 1.0);
+    const layers::Texture* colors = textures_.content_of(object_of(pbr, "baseColorTexture"));
+    const layers::vec3 base = to_.base_color;
+    set_surface(pbr_surface(base * (colors ? mean_color(*colors) : layers::vec3(1)), dielectric_of(from_),
+                            metallic * textures_.mean_of(map, 2),
+                            number_of(pbr, "roughnessFactor", 1) * roughness.mean));
+    if (!bake(pbr, colors, metallic))
+      to_.base_color = base * static_cast<float>(pbr_color_share(metallic * textures_.mean_of(map, 2)));
+  }
+
+  void set_surface(const PbrSurface& surface) {
+    to_.specular = surface.specular;
+    to_.shininess = surface.shininess;
+  }
+
+  /// Metalness and occlusion in the colour texture, where they are looked up as it is. True: the metalness is in it.
+  bool bake(const Json& pbr, const layers::Texture* colors, double metallic) {
+    const Json &metals = object_of(pbr, "metallicRoughnessTexture"),
+               &shades = object_of(from_, "occlusionTexture");
+    MapsToBake maps{colors, textures_.content_of(metals), textures_.content_of(shades), metallic,
+                    std::clamp(number_of(shades, "strength", 1), 0.0, 1.0)};
+    if (metallic == 0) maps.metallic = nullptr;
+    const GltfCoordinates common = coordinates_of(colors          ? object_of(pbr, "baseColorTexture")
+                                                  : maps.metallic ? metals
+                                                                  : shades);
+    if (maps.metallic && !(coordinates_of(metals) == common)) {
+      import_.lacks("metalness maps with coordinates of their own are drawn as their mean", to_.name);
+      maps.metallic = nullptr, maps.metallic_factor *= textures_.mean_of(metals, 2);
+    }
+    if (maps.occlusion && !(coordinates_of(shades) == common)) {
+      import_.lacks("occlusion maps with coordinates of their own are not drawn", to_.name);
+      maps.occlusion = nullptr;
+    }
+    if (!maps.metallic && !maps.occlusion) return false;
+    const bool opaque = text_of(from_, "alphaMode", "OPAQUE") == "OPAQUE";
+    const std::string combination = pbr.dump() + shades.dump() + (opaque ? "opaque" : "");
+    const int texture = textures_.baked(combination, opaque, maps);
+    if (texture < 0) return true;
+    to_.texture = texture;
+    maps_.base = common;
+    maps_.has_base_map = true;
+    return true;
   }
 
   void read_gloss(const Json& gloss) {
@@ -224,7 +289,8 @@ class Reading {
     const Json& map = object_of(gloss, "specularGlossinessTexture");
     if (!map.empty()) import_.lacks("specular-glossiness maps are drawn as their mean", to_.name);
     const double glossiness = number_of(gloss, "glossinessFactor", 1) * textures_.mean_of(map, 3);
-    set_gloss(1 - glossiness, 0, color_of(numbers_of(gloss, "specularFactor", 3, {1, 1, 1})), to_);
+    set_surface(pbr_surface(to_.base_color, color_of(numbers_of(gloss, "specularFactor", 3, {1, 1, 1})), 0,
+                            1 - glossiness));
   }
 
   void read_emission() {
@@ -242,7 +308,6 @@ class Reading {
   void name_what_is_left_out() {
     if (to_.unlit) return;
     if (from_.contains("normalTexture")) import_.lacks("normal maps are not drawn", to_.name);
-    if (from_.contains("occlusionTexture")) import_.lacks("occlusion maps are not drawn", to_.name);
     if (const Json* specular = extension_of(from_, "KHR_materials_specular"))
       if (specular->contains("specularTexture") || specular->contains("specularColorTexture"))
         import_.lacks("specular maps are not drawn", to_.name);

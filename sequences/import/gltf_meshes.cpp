@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "sequences/import/gltf_compression.h"
 #include "sequences/import/gltf_scene.h"
 
 namespace talisman::sequences {
@@ -185,8 +186,30 @@ layers::Mesh read_primitive(GltfImport& import, const Json& primitive, int mater
   read_colors(import, attributes, opaque, mesh);
   read_influences(import, attributes, mesh);
   read_morphs(import, primitive, mesh);
-  mesh.indices = triangles_of(index_of(primitive, "mode") < 0 ? kTriangles : index_of(primitive, "mode"),
-                              read_indices(import, primitive, n));
+  return mesh;
+}
+
+std::vector<std::uint32_t> indices_of(GltfImport& import, const Json& primitive, std::size_t vertices) {
+  const int mode = index_of(primitive, "mode");
+  return triangles_of(mode < 0 ? kTriangles : mode, read_indices(import, primitive, vertices));
+}
+
+/// The mesh of a primitive, compressed or not.
+layers::Mesh mesh_of_primitive(GltfImport& import, const Json& primitive, int material) {
+  const Json* draco = extension_of(primitive, "KHR_draco_mesh_compression");
+  if (!draco) {
+    layers::Mesh mesh = read_primitive(import, primitive, material);
+    mesh.indices = indices_of(import, primitive, mesh.positions.size());
+    return mesh;
+  }
+  DracoMesh decoded = decoded_draco(import.file, primitive, *draco);
+  import.file.decoded = std::move(decoded.accessors);
+  layers::Mesh mesh = read_primitive(import, primitive, material);
+  import.file.decoded.clear();
+  for (const std::uint32_t index : decoded.indices)
+    if (index >= mesh.positions.size())
+      throw InputError("KHR_draco_mesh_compression: has no positions for its triangles");
+  mesh.indices = std::move(decoded.indices);
   return mesh;
 }
 
@@ -211,10 +234,7 @@ int add_primitive(GltfImport& import, const Json& primitive, const std::string& 
     import.lacks(mode == 0 ? "points are not drawn" : "lines are not drawn", name);
     return -1;
   }
-  if (extension_of(primitive, "KHR_draco_mesh_compression") &&
-      index_of(object_of(primitive, "attributes"), "POSITION") < 0)
-    throw InputError("needs KHR_draco_mesh_compression, which is not read");
-  layers::Mesh mesh = read_primitive(import, primitive, material_of(import, primitive));
+  layers::Mesh mesh = mesh_of_primitive(import, primitive, material_of(import, primitive));
   if (mesh.indices.empty()) return -1;
   mesh.name = name;
   if (!import.morph_animated.contains(node)) bake_morphs(weights, mesh);

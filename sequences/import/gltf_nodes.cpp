@@ -269,8 +269,8 @@ bool is_gltf2(const std::string& path) {
   return !is_gltf1(path);
 }
 
-ImportedModel read_gltf(const std::string& path) {
-  GltfImport import(read_gltf_file(path));
+ImportedModel read_gltf(const ModelPlace& place) {
+  GltfImport import(read_gltf_file(place));
   import.file.uses.add_code();
   for (const std::string& name : gltf_extensions_not_read(import.file))
     import.warn("extension " + name + " is not drawn");

@@ -74,7 +74,7 @@ struct GltfImport {
 bool is_gltf2(const std::string& path);
 
 /// Reads the file. Throws InputError without the file's name.
-ImportedModel read_gltf(const std::string& path);
+ImportedModel read_gltf(const ModelPlace& place);
 
 void import_gltf_materials(GltfImport& import);
 void find_animated_morphs(GltfImport& import);

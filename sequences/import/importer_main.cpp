@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// talisman_import PATH SECONDS MEGABYTES: reads a model (glTF 2 by a reader made for it, all others with assimp) and writes it to stdout as a scene
-// stream. Started by import_model; limits itself first, so that nothing in the file can take more than that.
+// talisman_import PATH SECONDS MEGABYTES [FOLDER…]: reads a model (glTF 2 and OBJ by readers made for them, all others with
+// assimp) and writes it to stdout as a scene stream. FOLDER: where else files that it names may lie. Started by
+// import_model; limits itself first, so that nothing in the file can take more than that.
 
 #include <csignal>
 #include <cstdio>
@@ -15,6 +16,7 @@
 
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/gltf_scene.h"
+#include "sequences/import/obj_scene.h"
 #include "sequences/import/scene_stream.h"
 
 namespace {
@@ -40,9 +42,10 @@ void limit_ourselves(int seconds, long megabytes) {
 }
 
 /// glTF 1 has the same extensions, and assimp reads it.
-talisman::sequences::ImportedModel read_model(const std::string& path) {
-  return talisman::sequences::is_gltf2(path) ? talisman::sequences::read_gltf(path)
-                                             : talisman::sequences::read_with_assimp(path);
+talisman::sequences::ImportedModel read_model(const talisman::sequences::ModelPlace& place) {
+  if (talisman::sequences::is_gltf2(place.path)) return talisman::sequences::read_gltf(place);
+  if (talisman::sequences::is_obj(place.path)) return talisman::sequences::read_obj(place);
+  return talisman::sequences::read_with_assimp(place);
 }
 
 int fail(const char* what) {
@@ -53,10 +56,10 @@ int fail(const char* what) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 4) return fail("usage: talisman_import PATH SECONDS MEGABYTES (started by talisman)");
+  if (argc < 4) return fail("usage: talisman_import PATH SECONDS MEGABYTES [FOLDER…] (started by talisman)");
   limit_ourselves(std::atoi(argv[2]), std::atol(argv[3]));
   try {
-    const auto bytes = talisman::sequences::bytes_from_model(read_model(argv[1]));
+    const auto bytes = talisman::sequences::bytes_from_model(read_model({argv[1], {argv + 4, argv + argc}}));
     if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
       return fail("the reader could not hand its result over");
     _exit(ExitCode::kSuccess);  // libraries of readers are not trusted to end cleanly either

@@ -15,12 +15,13 @@ namespace {
 constexpr const char* kModelKind = "model";
 
 std::optional<ContentHash> key_of(const std::string& path, const ImportLimits& limits,
-                                  const std::string& reader) {
+                                  const std::string& reader, const std::vector<std::string>& folders) {
   const auto model = hash_of_file(path), code = hash_of_file(reader);
   if (!model || !code) return std::nullopt;
   ContentHasher hasher;
   hasher.add(kModelKind).add(path).add(std::filesystem::absolute(path).string());
   hasher.add(*model).add(*code).add(limits.seconds).add(limits.megabytes);
+  for (const std::string& folder : folders) hasher.add(std::filesystem::absolute(folder).string());
   return hasher.hash();
 }
 
@@ -40,9 +41,10 @@ bool is_current(std::span<const std::uint8_t> hashes, const std::vector<FileUse>
 
 }  // namespace
 
-CachedModel::CachedModel(std::string path, const ImportLimits& limits, const std::string& reader)
+CachedModel::CachedModel(std::string path, const ImportLimits& limits, const std::string& reader,
+                         const std::vector<std::string>& folders)
     : path_(std::move(path)) {
-  if (program_cache().is_on()) key_ = key_of(path_, limits, reader);
+  if (program_cache().is_on()) key_ = key_of(path_, limits, reader, folders);
 }
 
 std::optional<ImportedModel> CachedModel::find() const {

@@ -191,15 +191,18 @@ std::vector<std::string> files_read(const ImportedModel& model) {
   return files;
 }
 
-ImportedModel import_model(const std::string& path, const ImportLimits& limits) {
+ImportedModel import_model(const std::string& path, const ImportLimits& limits,
+                           const std::vector<std::string>& folders) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(path, error))
     throw InputError(std::filesystem::exists(path, error) ? "is not a file" : "does not exist", path);
   const std::string reader = importer_program();
-  const CachedModel cached(path, limits, reader);
+  const CachedModel cached(path, limits, reader, folders);
   if (auto model = cached.find()) return std::move(*model);
-  const Outcome outcome =
-      run({reader, path, std::to_string(limits.seconds), std::to_string(limits.megabytes)}, limits);
+  std::vector<std::string> arguments = {reader, path, std::to_string(limits.seconds),
+                                        std::to_string(limits.megabytes)};
+  arguments.insert(arguments.end(), folders.begin(), folders.end());
+  const Outcome outcome = run(arguments, limits);
   if (const std::string what = failure(outcome, limits); !what.empty()) throw InputError(what, path);
   try {
     ImportedModel model = model_from_bytes(outcome.bytes);

@@ -6,15 +6,15 @@
 /// (scene_stream.h); the parent checks every length and every index again.
 ///
 /// What is made of a file:
-///   readers    glTF 2 by one made for it (gltf_scene.h), everything else by assimp
+///   readers    glTF 2 and OBJ by their own (gltf_scene.h, obj_scene.h), everything else by assimp
 ///   geometry   triangles; where the file has no normals flat ones (glTF) or smooth ones (others); points and
 ///              lines are not drawn, which is said
 ///   colours    linear light; glTF is linear already, other formats are taken as sRGB, vertex colours too
 ///   places     metres, y up: FBX axes and units are applied; an OBJ far from its origin is read around a
-///              local one (file_frame.h)
-///   PBR        base colour as it is; specular = mix(0.04, base, metallic) · (1 − roughness), Blinn-Phong
-///              exponent 2 / roughness⁴ − 2, at most 1024; metallic-roughness maps as their mean; emissive maps;
-///              normal and occlusion maps are not drawn, which is said
+///              local one (obj_scene.h)
+///   PBR        pbr_surface.h; metalness and occlusion maps in the colour texture (gltf_baked_maps.h), roughness
+///              maps as their mean; emissive maps; normal maps are not drawn, which is said
+///   compressed meshopt and draco (gltf_compression.h)
 ///   textures   embedded, or found by the rules of texture_search.h; one that is not found is a warning and a
 ///              plain colour
 ///   motion     the first animation, ticks → seconds, looping; morph targets of glTF
@@ -50,6 +50,7 @@ struct ImportedModel {
   std::vector<std::string> notes;     ///< what was decided where the file leaves it open
   std::vector<LayerTag> layer_tags;
   std::vector<FileUse> files = {};  ///< all that the reader asked of the file system
+  double exposure_lx = 1;           ///< > 0; all lights were divided by it (exposure.h)
 };
 
 /// The files that were read for it: the model itself, parts of it, its textures.
@@ -60,6 +61,8 @@ std::vector<std::string> files_read(const ImportedModel& model);
 /// not-a-number positions, indices out of range). Cost: a process start (about 0.4 s, nearly all of it for
 /// loading what the image library depends on) and two copies of the scene; less where the program's cache knows
 /// the model (model_cache.h).
-ImportedModel import_model(const std::string& path, const ImportLimits& limits = {});
+/// `folders`: in whose trees files that the model names may lie too (texture_search.h).
+ImportedModel import_model(const std::string& path, const ImportLimits& limits = {},
+                           const std::vector<std::string>& folders = {});
 
 }  // namespace talisman::sequences

@@ -1,27 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <assimp/DefaultIOSystem.h>
+#include <filesystem>
 
-#include "sequences/files/file_uses.h"
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/MemoryIOWrapper.h>
+
+#include "sequences/import/texture_search.h"
 
 namespace talisman::sequences {
 
-/// The file system as assimp sees it, with a record of what it asked for.
+/// The file system as assimp sees it: the model, and what find_file lets it have; with a record of what it asked
+/// for.
 class RecordedFiles : public Assimp::DefaultIOSystem {
  public:
-  explicit RecordedFiles(FileUses& files) : files_(files) {}
-  bool Exists(const char* file) const override {
-    files_.look_for(file);
-    return DefaultIOSystem::Exists(file);
-  }
+  RecordedFiles(const ModelPlace& model, FileUses& files) : model_(model), files_(files) {}
+  bool Exists(const char* file) const override { return !found(file).empty(); }
   Assimp::IOStream* Open(const char* file, const char* mode) override {
-    files_.look_for(file);
-    return DefaultIOSystem::Open(file, mode);
+    const std::string path = found(file);
+    return path.empty() ? nullptr : DefaultIOSystem::Open(path.c_str(), mode);
   }
 
  private:
+  std::string found(const char* file) const {
+    if (model_.path != file) return find_file(model_, std::filesystem::absolute(file).string(), files_);
+    files_.look_for(file);
+    return file;
+  }
+
+  const ModelPlace& model_;
   FileUses& files_;
+};
+
+/// Answers the model's path with other bytes than the file has.
+class ReplacedModel : public RecordedFiles {
+ public:
+  ReplacedModel(const ModelPlace& model, FileUses& files, const std::string& content)
+      : RecordedFiles(model, files), path_(model.path), content_(content) {}
+  bool Exists(const char* file) const override { return path_ == file || RecordedFiles::Exists(file); }
+  Assimp::IOStream* Open(const char* file, const char* mode = "rb") override {
+    if (path_ != file) return RecordedFiles::Open(file, mode);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content_.data()),
+                                      content_.size());
+  }
+
+ private:
+  std::string path_;
+  const std::string& content_;
 };
 
 }  // namespace talisman::sequences

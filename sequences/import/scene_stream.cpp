@@ -2,6 +2,7 @@
 #include "sequences/import/scene_stream.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <type_traits>
 
@@ -11,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kSceneMagic =
     0x4d534c54;  // "TLSM"; both ends run on one machine, so bytes are in its order
-constexpr std::uint32_t kVersion = 3;
+constexpr std::uint32_t kVersion = 4;
 
 [[noreturn]] void fail(const std::string& what) { throw InputError("scene stream: " + what); }
 
@@ -332,6 +333,7 @@ void fields(Stream& s, T& model) {
   s.list(model.notes);
   s.list(model.layer_tags);
   s.list(model.files);
+  s.value(model.exposure_lx);
 }
 
 template <typename T>
@@ -376,6 +378,8 @@ std::vector<std::uint8_t> bytes_from_model(const ImportedModel& model) { return 
 ImportedModel model_from_bytes(std::span<const std::uint8_t> bytes) {
   ImportedModel model = from_bytes<ImportedModel>(bytes);
   check_scene(model.scene);
+  if (!(model.exposure_lx > 0 && std::isfinite(model.exposure_lx)))
+    fail("exposure " + std::to_string(model.exposure_lx) + ", rule: above 0");
   for (const LayerTag& tag : model.layer_tags)
     if (tag.node < 0 || tag.node >= static_cast<int>(model.scene.nodes.size()))
       fail("layer '" + tag.layer + "' is given to node " + std::to_string(tag.node));

@@ -29,15 +29,20 @@ bool is_picture(const fs::path& path) {
   return std::find(kPictures.begin(), kPictures.end(), extension) != kPictures.end();
 }
 
-/// Where files may lie: the model's folder, by the name it was given and by where the file really is.
-std::vector<fs::path> roots_of(const std::string& model_path) {
+/// Where files may lie: the model's folder, by the name it was given and by where the file really is, and the
+/// further ones.
+std::vector<fs::path> roots_of(const ModelPlace& place) {
   std::vector<fs::path> roots;
   std::error_code error;
-  for (const fs::path& model : {fs::absolute(model_path), fs::canonical(model_path, error)}) {
+  const auto add = [&](const fs::path& folder) {
+    if (const fs::path real = fs::canonical(folder, error); !error) roots.push_back(real);
+  };
+  for (const fs::path& model : {fs::absolute(place.path), fs::canonical(place.path, error)}) {
     if (model.empty()) continue;
-    for (const fs::path& folder : {model.parent_path(), model.parent_path().parent_path() / "textures"})
-      if (const fs::path real = fs::canonical(folder, error); !error) roots.push_back(real);
+    add(model.parent_path());
+    add(model.parent_path().parent_path() / "textures");
   }
+  for (const std::string& folder : place.folders) add(folder);
   return roots;
 }
 
@@ -56,9 +61,19 @@ std::string allowed(const fs::path& candidate, const std::vector<fs::path>& root
   return inside ? candidate.string() : std::string();
 }
 
-std::vector<fs::path> places_of(const std::string& model_path) {
-  const fs::path folder = fs::absolute(model_path).parent_path();
-  return {folder, folder.parent_path() / "textures", folder / "textures"};
+/// To what a path as written is relative.
+std::vector<fs::path> bases_of(const ModelPlace& model) {
+  std::vector<fs::path> bases = {fs::absolute(model.path).parent_path()};
+  for (const std::string& folder : model.folders) bases.push_back(fs::absolute(folder));
+  return bases;
+}
+
+std::vector<fs::path> places_of(const ModelPlace& model) {
+  const fs::path own = fs::absolute(model.path).parent_path();
+  std::vector<fs::path> places = {own, own.parent_path() / "textures", own / "textures"};
+  for (const std::string& folder : model.folders)
+    places.insert(places.end(), {fs::absolute(folder), fs::absolute(folder) / "textures"});
+  return places;
 }
 
 /// The files of a folder that are pictures and that `fits` takes, sorted: the order in a folder is nobody's
@@ -99,24 +114,24 @@ std::string similar_in(const fs::path& folder, const fs::path& name, const std::
 
 }  // namespace
 
-std::string find_file(const std::string& model_path, const std::string& written, FileUses& files) {
+std::string find_file(const ModelPlace& model, const std::string& written, FileUses& files) {
   const fs::path path = with_slashes(written);
   if (path.empty()) return {};
-  const std::vector<fs::path> roots = roots_of(model_path);
-  const std::vector<fs::path> places = places_of(model_path);
-  if (const std::string found = allowed(places.front() / path, roots, files); !found.empty()) return found;
-  for (const fs::path& place : places)
+  const std::vector<fs::path> roots = roots_of(model);
+  for (const fs::path& base : bases_of(model))
+    if (const std::string found = allowed(base / path, roots, files); !found.empty()) return found;
+  for (const fs::path& place : places_of(model))
     if (const std::string found = allowed(place / path.filename(), roots, files); !found.empty())
       return found;
   return {};
 }
 
-std::string find_texture(const std::string& model_path, const std::string& written, FileUses& files) {
+std::string find_texture(const ModelPlace& model, const std::string& written, FileUses& files) {
   const fs::path path = with_slashes(written);
-  if (const std::string found = find_file(model_path, written, files); !found.empty())
+  if (const std::string found = find_file(model, written, files); !found.empty())
     return is_picture(found) ? found : std::string();
-  const std::vector<fs::path> roots = roots_of(model_path);
-  for (const fs::path& place : places_of(model_path))
+  const std::vector<fs::path> roots = roots_of(model);
+  for (const fs::path& place : places_of(model))
     if (const std::string found = similar_in(place, path, roots, files); !found.empty()) return found;
   return {};
 }

@@ -16,7 +16,7 @@ void refuse_others_words(const std::vector<std::string>& words, bool plan_only) 
   for (const std::string& word : words) {
     const std::string option = word.substr(0, word.find('='));
     for (const char* refused : {"--out", "--progress", "--format", "--video", "--separate", "--overlay",
-                                "--quality", "--resume", "--help"})
+                                "--quality", "--resume", "--force", "--help"})
       if (option == refused)
         throw InputError(option + " is about files or the terminal, must be said to the command talisman");
     if (option == "--frames" && !plan_only)
@@ -40,7 +40,7 @@ class Threads {
 Call::Call(const std::string& sequence, const std::vector<std::string>& words, bool plan_only) {
   refuse_others_words(words, plan_only);
   const CommandLine line = command_line_from(sequence, words, plan_only);
-  sequence_ = load_sequence(line.sequence);
+  sequence_ = load_sequence(line.sequence, content_options(line.content));
   const ResolvedRun resolved = resolve(line, sequence_, plan_only);
   settings_ = resolved.settings;
   first_frame_ = resolved.options.first_frame;

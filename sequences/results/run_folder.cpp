@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -44,6 +45,21 @@ Json earlier_run(const RunOptions& options) {
 }
 
 bool is_plan(const Json& run) { return run.is_object() && run.value("kind", "") == "plan"; }
+
+/// Is there anything in the folder, and nothing that says it is a run's? What a killed run left before it could say
+/// so does not count.
+bool holds_others_files(const std::string& out, const Json& earlier) {
+  if (earlier.is_object() && earlier.value("schema", "").rfind("talisman.run/", 0) == 0) return false;
+  const std::set<std::string> ours = {".lock", "frames", "separate"};
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(out, error)) {
+    const std::string name = entry.path().filename().string();
+    const bool is_left_over =
+        name.rfind(".tmp-", 0) == 0 || (ours.contains(name) && fs::is_empty(entry, error));
+    if (name != ".lock" && !is_left_over) return true;
+  }
+  return false;
+}
 
 /// Frames that an earlier run completed: their line and their picture are there.
 KeptRun complete_frames(const RunOptions& options) {
@@ -93,6 +109,9 @@ KeptRun begin_run(const RunOptions& options, const Json& run) {
   if (options.plan_only && is_render)
     throw InputError("says that the folder holds pictures, a plan must go into a folder of its own",
                      run_file);
+  if (!options.force && holds_others_files(options.out, earlier))
+    throw InputError("holds files that are not of a run, rule: an empty folder, one of a run, or --force",
+                     options.out);
   create_folder(options.out);
   if (!options.plan_only) create_folder(options.out + "/frames");
   if (options.separate) create_folder(options.out + "/separate");

@@ -31,7 +31,7 @@ struct KeptRun {
 };
 
 /// Makes the folders, removes what killed runs left half written, and (unless `resume` asks to go on with what is
-/// complete) all results of an earlier run. `run` is what run.json is to say; it is written. Throws InputError when
+/// complete) all results of an earlier run. A folder that holds other files is refused unless `force`. `run` is what run.json is to say; it is written. Throws InputError when
 /// the run to be resumed is another one, OutputError when a folder or file cannot be written.
 KeptRun begin_run(const RunOptions& options, const nlohmann::ordered_json& run);
 

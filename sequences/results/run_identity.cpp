@@ -72,7 +72,7 @@ std::string difference_of_content(const Json& before, const Json& now) {
 /// The entries that are not compared as a part of their own.
 Json outer(const Json& json) {
   Json rest = json;
-  for (const char* part : {"identity", "settings", "content"}) rest.erase(part);
+  for (const char* part : {"identity", "settings", "content", "options"}) rest.erase(part);
   return rest;
 }
 
@@ -82,26 +82,40 @@ const Json& part(const Json& json, const char* name) {
   return found && found->is_object() ? *found : none;
 }
 
+/// What was asked for on the command line and changes the picture.
+Json asked_of_content(const ContentOptions& options) {
+  Json asked = Json::object();
+  if (options.exposure_lx) asked["exposure"] = *options.exposure_lx;
+  if (options.turntable_s) asked["turntable"] = *options.turntable_s;
+  if (!options.stage) asked["stage"] = false;
+  return asked;
+}
+
 }  // namespace
 
 Json run_json(const Sequence& sequence, const Settings& settings, const RunOptions& o) {
   const Json of_settings = json_of(settings), content = content_json(sequence);
-  const Json identity = {{"version", TALISMAN_VERSION},
-                         {"sequence", sequence.name},
-                         {"settings", of_settings},
-                         {"content", content}};
-  return {{"schema", "talisman.run/2"},  {"identity", ContentHasher().add(identity.dump()).hash().hex()},
-          {"version", TALISMAN_VERSION}, {"kind", o.plan_only ? "plan" : "render"},
-          {"sequence", sequence.name},   {"frames", {o.first_frame, o.last_frame}},
-          {"format", name_of(o.format)}, {"overlay", o.overlay},
-          {"separate", o.separate},      {"quality", o.quality},
-          {"settings", of_settings},     {"content", content}};
+  const Json asked = asked_of_content(sequence.content);
+  Json identity = {{"version", TALISMAN_VERSION},
+                   {"sequence", sequence.name},
+                   {"settings", of_settings},
+                   {"content", content}};
+  if (!asked.empty()) identity["options"] = asked;
+  Json run = {{"schema", "talisman.run/2"},  {"identity", ContentHasher().add(identity.dump()).hash().hex()},
+              {"version", TALISMAN_VERSION}, {"kind", o.plan_only ? "plan" : "render"},
+              {"sequence", sequence.name},   {"frames", {o.first_frame, o.last_frame}},
+              {"format", name_of(o.format)}, {"overlay", o.overlay},
+              {"separate", o.separate},      {"quality", o.quality},
+              {"settings", of_settings},     {"content", content}};
+  if (!asked.empty()) run["options"] = asked;
+  return run;
 }
 
 std::string first_difference(const Json& before, const Json& now) {
   if (!before.is_object()) return "run.json holds no run, --resume must continue one";
   std::string difference = difference_of_values(outer(before), outer(now));
-  if (difference.empty()) difference = difference_of_values(part(before, "settings"), part(now, "settings"));
+  for (const char* name : {"settings", "options"})
+    if (difference.empty()) difference = difference_of_values(part(before, name), part(now, name));
   if (!difference.empty()) return difference + ", --resume must continue with the same options";
   difference = difference_of_content(part(before, "content"), part(now, "content"));
   return difference.empty() ? difference : difference + ", --resume must continue with the same content";

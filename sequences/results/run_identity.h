@@ -9,6 +9,7 @@
 ///   kind       "render" or "plan"
 ///   frames, format, overlay, separate, quality    which of it is written: not part of the identity
 ///   settings   every field of Settings (settings_json.h)
+///   options    what the command line asked of the content, where it did: exposure, turntable, stage
 ///   content    hash (XXH3-128) of every file that the sequence was read from, by name: its YAML files, models and what
 ///              they refer to, textures, terrain and lists. Names do not depend on the machine: that in the
 ///              Debian package, or the path from the sequence file.

@@ -127,6 +127,7 @@ void add_decisions(Summary& summary, const FrameReport& report, const PipelineSt
     any_deferred = any_deferred || d.deferred;
     if (d.action != regulator::Action::Rerender) continue;
     ++layer.renders;
+    layer.is_capped |= state.memory[d.layer].placement.resolution_reduced;
     const layers::Layer& drawn = report.layers[d.layer];
     for (const int member : drawn.members) ++summary.layers[member].merged_renders;
     for (std::size_t e = 0; e < summary.effects.size(); ++e)

@@ -26,6 +26,7 @@ struct LayerSummary {
   layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
   double sum_resolution = 0;      ///< over the frames in which it was shown
   int merged_renders = 0;         ///< renders of aggregates in which it took part; not among `renders`
+  bool is_capped = false;         ///< a sprite had fewer texels than asked for, by max_sprite_px
   bool is_aggregate = false;      ///< counted with its members where rates are averaged
   bool is_shadow_map = false;     ///< not counted where rates are averaged
   int frames_deferred = 0;        ///< worth drawing, but the budget did not suffice

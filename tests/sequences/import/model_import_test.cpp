@@ -209,10 +209,10 @@ TEST(ImportModel, GltfBringsMotionLayerTagAndLinearColour) {
   EXPECT_EQ(model.layer_tags[0].layer, "hull");
   EXPECT_EQ(model.scene.nodes[model.layer_tags[0].node].name, "ship");
   const layers::Material& gold = model.scene.materials[part.material];
-  EXPECT_NEAR(gold.base_color.x, 0.5, 1e-6);  // not decoded from sRGB
+  EXPECT_NEAR(gold.base_color.x, 0.225, 1e-6);  // 0.5 not decoded from sRGB, of which a metal keeps 0.45
   EXPECT_TRUE(gold.two_sided);
-  EXPECT_NEAR(gold.shininess, 30, 1e-3);     // 2 / 0.5⁴ − 2
-  EXPECT_NEAR(gold.specular.x, 0.25, 1e-6);  // metal: base colour, times 1 − roughness
+  EXPECT_NEAR(gold.shininess, 30, 1e-3);       // 2 / 0.5⁴ − 2
+  EXPECT_NEAR(gold.specular.x, 0.9375, 1e-6);  // base · 2.5 · (1 − 0.5²)
 }
 
 TEST(ImportModel, NotANumberPositionsNameTheMesh) {
@@ -312,8 +312,7 @@ TEST(LoadModel, BareModelIsFramedAtAnyUnit) {
         << " 0\nf 1 2 3\n";
     const Sequence sequence = load_sequence(folder.write("thing.obj", obj.str()));
     EXPECT_EQ(sequence.name, "thing");
-    EXPECT_EQ(sequence.frames, 120);
-    ASSERT_EQ(sequence.layers.layers.size(), 1u);
+    ASSERT_EQ(sequence.layers.layers.size(), 3u);  // the ground and its shadow
     EXPECT_EQ(layers::first_defect(*sequence.scene), "");
     double widest = 0;
     for (int f = 0; f < sequence.frames; f += 10) {
@@ -346,7 +345,7 @@ TEST(LoadModel, AnimationGivesTheLengthAndTagsTheLayer) {
   const TemporaryFolder folder;
   const Sequence sequence = load_sequence(folder.write("moving.gltf", moving_gltf()));
   EXPECT_EQ(sequence.frames, 48);
-  ASSERT_EQ(sequence.layers.layers.size(), 1u);
+  ASSERT_EQ(sequence.layers.layers.size(), 3u);  // the ground and its shadow
   EXPECT_EQ(sequence.layers.layers[0].name, "hull");
   EXPECT_EQ(sequence.layers.unassigned_parts, 0);
 }

@@ -174,7 +174,7 @@ TEST_F(EffectTable, OfABareTriangleCallsForLightAlone) {
                  {"lighting", kCalled, "material 'DefaultMaterial' is lit"},
                  {"visibility_sort", kNot, "no two layers are in one group"},
                  {"color_warp", kNot, "no light moves against a lit layer, and no highlight moves"});
-  expect_table(load_sequence(folder.write("triangle.obj", kTriangle)), rows);
+  expect_table(load_sequence(folder.write("triangle.obj", kTriangle), {.stage = false}), rows);
 }
 
 TEST_F(EffectTable, OfARunThatCompressesSaysSoOfEveryLayer) {
@@ -185,7 +185,8 @@ TEST_F(EffectTable, OfARunThatCompressesSaysSoOfEveryLayer) {
                  {"visibility_sort", kNot, "no two layers are in one group"},
                  {"color_warp", kNot, "no light moves against a lit layer, and no highlight moves"});
   rows[8] = {"sprite_compression", kCalled, "the run asks for quality 85"};
-  expect_table(load_sequence(folder.write("triangle.obj", kTriangle)), rows, {.compression_quality = 85});
+  expect_table(load_sequence(folder.write("triangle.obj", kTriangle), {.stage = false}), rows,
+               {.compression_quality = 85});
 }
 
 TEST_F(EffectTable, OfAModelWithATileAndAPaneCallsForWhatTheirMaterialsNeed) {
@@ -195,10 +196,12 @@ TEST_F(EffectTable, OfAModelWithATileAndAPaneCallsForWhatTheirMaterialsNeed) {
   folder.write("two.mtl",
                "newmtl tile\nKd 1 1 1\nmap_Kd tile.png\n"
                "newmtl glass\nKd 0.2 0.4 0.6\nKs 0.5 0.5 0.5\nNs 40\nd 0.5\n");
-  const Sequence s = load_sequence(folder.write(
-      "two.obj",
-      "mtllib two.mtl\nv -2 0 0\nv -1 0 0\nv -1 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
-      "o floor\nusemtl tile\nf 1/1 2/2 3/3\no pane\nusemtl glass\nf 4/1 5/2 6/3\n"));
+  const Sequence s = load_sequence(
+      folder.write(
+          "two.obj",
+          "mtllib two.mtl\nv -2 0 0\nv -1 0 0\nv -1 1 0\nv 1 0 0\nv 2 0 0\nv 2 1 0\nvt 0 0\nvt 1 0\nvt 1 1\n"
+          "o floor\nusemtl tile\nf 1/1 2/2 3/3\no pane\nusemtl glass\nf 4/1 5/2 6/3\n"),
+      {.stage = false});
   std::vector<Row> rows =
       plain_rows({"texture", kCalled, "material 'tile' has texture 'tile.png'"},
                  {"lighting", kCalled, "material 'tile' is lit"},

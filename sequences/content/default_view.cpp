@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/content/default_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <string>
+
+#include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+namespace talisman::sequences {
+
+namespace {
+
+using layers::dvec3;
+using layers::Light;
+
+constexpr double kOrbitElevation_rad = 0.3;
+constexpr double kOrbitFov_rad = 0.7;
+constexpr double kOrbitRoom = 1.08;  // the sphere around all parts fills the picture but for this
+
+constexpr float kKey = 0.65f, kSkyAbove = 0.2f, kSkyAround = 0.28f;
+const dvec3 kKeyDirection = glm::normalize(dvec3(-0.4, -0.85, -0.35));
+/// Linear; as the square root in 8 bits, as sprites have it, a whole number: ground and backdrop are alike to the
+/// last bit.
+constexpr float kBackdrop = 128.0f / 255 * 128 / 255;
+/// In radii of what stands on it; the shadow of its sphere reaches as far under the key light.
+constexpr double kGroundRadius = 2.3;
+constexpr double kGroundGap = 2e-3;  // below the lowest point: nothing lies in the ground's plane
+constexpr int kGroundSides = 48;
+
+int add_node(layers::Scene& scene, const std::string& name, int parent, const layers::Transform& local) {
+  scene.nodes.push_back({name, parent, local});
+  return static_cast<int>(scene.nodes.size()) - 1;
+}
+
+struct Sphere {
+  dvec3 center{0};
+  double radius = 1;
+  double lowest = 0;  ///< y of what is in it
+};
+
+Sphere around(const layers::Scene& scene) {
+  const layers::WorldBounds bounds = bounds_of_scene(scene);
+  if (bounds.empty()) return {};
+  const double radius = 0.5 * glm::length(bounds.hi - bounds.lo);
+  return {0.5 * (bounds.lo + bounds.hi), radius > 0 ? radius : 1, bounds.lo.y};
+}
+
+void add_orbit(layers::Scene& scene, const Sphere& all, double turn_s) {
+  const double distance = kOrbitRoom * all.radius / std::sin(kOrbitFov_rad / 2);
+  layers::Transform pivot, arm;
+  pivot.translation = all.center;
+  arm.rotation = glm::angleAxis(-kOrbitElevation_rad, dvec3(1, 0, 0));
+  arm.translation = arm.rotation * dvec3(0, 0, distance);
+  const int pivot_node = add_node(scene, "orbit", -1, pivot);
+  layers::Camera camera;
+  camera.name = "orbit";
+  camera.node = add_node(scene, "orbit camera", pivot_node, arm);
+  camera.fov_y_rad = kOrbitFov_rad;
+  camera.near_m = 0.5 * (distance - all.radius);
+  camera.far_m = 2 * (distance + all.radius);
+  scene.tracks.push_back({pivot_node, layers::SpinTrack{{0, 1, 0}, 2 * M_PI / turn_s}});
+  scene.cameras.push_back(camera);
+}
+
+Light light_of(const char* name, Light::Kind kind, const dvec3& direction, float intensity) {
+  Light light;
+  light.name = name;
+  light.kind = kind;
+  light.direction = direction;
+  light.color = layers::vec3(intensity);
+  return light;
+}
+
+void add_daylight(layers::Scene& scene) {
+  scene.lights.push_back(light_of("ambient", Light::Kind::Ambient, {0, -1, 0}, 0.25f));
+  scene.lights.push_back(light_of("sun", Light::Kind::Directional, {-0.45, -0.75, -0.5}, 0.85f));
+}
+
+void add_key_and_sky(layers::Scene& scene, float factor) {
+  scene.lights.push_back(light_of("sky", Light::Kind::Ambient, {0, -1, 0}, kSkyAround * factor));
+  scene.lights.push_back(light_of("sky above", Light::Kind::Directional, {0, -1, 0}, kSkyAbove * factor));
+  scene.lights.push_back(light_of("key", Light::Kind::Directional, kKeyDirection, kKey * factor));
+}
+
+/// A disc in y = 0 that faces up.
+layers::Mesh disc(double radius) {
+  layers::Mesh mesh;
+  mesh.name = "ground";
+  for (int k = 0; k < kGroundSides; ++k) {
+    const double angle = 2 * M_PI * k / kGroundSides;
+    mesh.positions.emplace_back(radius * std::sin(angle), 0, radius * std::cos(angle));
+    if (k >= 2) mesh.indices.insert(mesh.indices.end(), {0u, unsigned(k - 1), unsigned(k)});
+  }
+  mesh.normals.assign(mesh.positions.size(), layers::vec3(0, 1, 0));
+  return mesh;
+}
+
+std::string unused_name(const std::set<std::string>& used, std::string name) {
+  while (used.contains(name)) name += "'";
+  return name;
+}
+
+void add_ground(layers::Scene& scene, const Sphere& all, std::vector<layers::LayerSpec>& specs) {
+  std::set<std::string> parts, specced;
+  for (const layers::Part& part : scene.parts) parts.insert(part.name);
+  for (const layers::LayerSpec& spec : specs) specced.insert(spec.name);
+  layers::Transform place;
+  place.translation = {all.center.x, all.lowest - kGroundGap * all.radius, all.center.z};
+  layers::Part part;
+  part.name = unused_name(parts, "ground");
+  part.node = add_node(scene, "ground", -1, place);
+  part.mesh = static_cast<int>(scene.meshes.size());
+  part.material = static_cast<int>(scene.materials.size());
+  scene.meshes.push_back(disc(kGroundRadius * all.radius));
+  layers::Material material;
+  material.name = "ground";
+  const double light = kSkyAround + kSkyAbove - kKey * kKeyDirection.y;
+  material.base_color = layers::vec3(static_cast<float>(kBackdrop / light));
+  scene.materials.push_back(material);
+  scene.parts.push_back(part);
+  layers::LayerSpec spec;
+  spec.name = unused_name(specced, "ground");
+  spec.part_globs = {part.name};
+  spec.shading.shadows = layers::LayerPreferences{};
+  spec.casts_shadows = false;
+  specs.push_back(std::move(spec));
+}
+
+}  // namespace
+
+layers::WorldBounds bounds_of_scene(const layers::Scene& scene) {
+  constexpr int kSteps = 8;
+  layers::WorldBounds bounds;
+  const double duration = scene.duration_s();
+  for (int k = 0; k <= (duration > 0 ? kSteps : 0); ++k) {
+    const layers::SceneFrame frame = scene.at(duration * k / kSteps);
+    for (const layers::Part& part : scene.parts)
+      for (const dvec3& p : layers::world_positions(frame, part)) {
+        bounds.lo = glm::min(bounds.lo, p);
+        bounds.hi = glm::max(bounds.hi, p);
+      }
+  }
+  return bounds;
+}
+
+void add_default_view(layers::Scene& scene, double turn_s) {
+  if (scene.cameras.empty()) add_orbit(scene, around(scene), turn_s);
+  if (scene.lights.empty()) add_daylight(scene);
+}
+
+void add_model_view(layers::Scene& scene, std::vector<layers::LayerSpec>& specs, const ModelView& view) {
+  const bool on_stage = view.stage && scene.cameras.empty() && scene.lights.empty();
+  const Sphere all = around(scene);
+  if (scene.lights.empty()) add_key_and_sky(scene, static_cast<float>(1 / view.exposure_lx));
+  if (scene.cameras.empty()) add_orbit(scene, all, view.turn_s);
+  if (!on_stage) return;
+  scene.lights.back().casts_shadow = true;
+  scene.background = layers::vec3(kBackdrop / static_cast<float>(view.exposure_lx));
+  add_ground(scene, all, specs);
+}
+
+}  // namespace talisman::sequences

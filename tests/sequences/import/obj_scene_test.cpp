@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// OBJ by the specification of Wavefront (1995), on files of a few faces.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sequences/import/model_import.h"
+#include "tests/sequences/temporary_folder.h"
+
+namespace talisman::sequences {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using tests::TemporaryFolder;
+
+ImportedModel read_obj_text(const std::string& text) {
+  const TemporaryFolder folder;
+  return import_model(folder.write("thing.obj", text));
+}
+
+double area_of(const layers::Mesh& mesh) {
+  double area = 0;
+  for (std::size_t t = 0; t + 2 < mesh.indices.size(); t += 3) {
+    const layers::vec3 a = mesh.positions[mesh.indices[t]], b = mesh.positions[mesh.indices[t + 1]],
+                       c = mesh.positions[mesh.indices[t + 2]];
+    area += 0.5 * ((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+  }
+  return area;
+}
+
+TEST(ReadObj, PolygonsKeepTheirArea) {
+  // An L of six corners, which a fan from its first corner would not fill: 4 - 1 = 3.
+  const ImportedModel model =
+      read_obj_text("v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6\n");
+  EXPECT_EQ(model.scene.meshes.at(0).triangle_count(), 4);
+  EXPECT_NEAR(area_of(model.scene.meshes[0]), 3, 1e-6);
+}
+
+TEST(ReadObj, NegativeIndicesCountFromTheLast) {
+  const ImportedModel model = read_obj_text("v 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf -3 -2 -1\n");
+  EXPECT_THAT(model.scene.meshes.at(0).positions,
+              ElementsAre(layers::vec3(0), layers::vec3(1, 0, 0), layers::vec3(0, 1, 0)));
+}
+
+TEST(ReadObj, CornersOfOnePlaceWithOtherCoordinatesAreOtherVertices) {
+  const ImportedModel model = read_obj_text(
+      "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\nf 1/2 3/3 4/1\n");
+  const layers::Mesh& mesh = model.scene.meshes.at(0);
+  EXPECT_EQ(mesh.positions.size(), 5u);        // the first corner twice, the third shared
+  EXPECT_EQ(mesh.uvs[0], layers::vec2(0, 1));  // v grows downwards
+}
+
+TEST(ReadObj, SmoothingGroupsEndAtTheirBorders) {
+  // Two faces at a right angle along one edge, in one group, in two, and in none.
+  const std::string corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\n";
+  const auto normal = [&](const std::string& first, const std::string& second) {
+    return read_obj_text(corners + first + "f 1 2 3 4\n" + second + "f 2 1 5 6\n")
+        .scene.meshes.at(0)
+        .normals.at(0);
+  };
+  EXPECT_NEAR(normal("s 1\n", "s 2\n").z, 1, 1e-6);
+  EXPECT_NEAR(normal("s 1\n", "s 1\n").z, normal("", "").z, 1e-6);  // without any: all are one
+  EXPECT_LT(normal("s 1\n", "s 1\n").z, 0.95);
+  EXPECT_NEAR(normal("s off\n", "s 1\n").z, 1, 1e-6);
+}
+
+TEST(ReadObj, PartsAreObjectsAndTheirMaterials) {
+  const TemporaryFolder folder;
+  folder.write("my colours.mtl", "newmtl dark red\nKd 0.5 0 0\nnewmtl blue\nKd 0 0 1\n");
+  const ImportedModel model = import_model(folder.write(
+      "thing.obj",
+      "mtllib my colours.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\no one\nusemtl dark red\nf 1 2 3\nusemtl blue\n"
+      "f 3 2 1\no two\nusemtl blue\nf 1 2 3\n"));
+  ASSERT_EQ(model.scene.parts.size(), 3u);
+  EXPECT_EQ(model.scene.parts[0].name, "thing.obj/one#0");
+  EXPECT_EQ(model.scene.parts[1].name, "thing.obj/one#1");
+  EXPECT_EQ(model.scene.parts[2].name, "thing.obj/two");
+  const auto color = [&](std::size_t part) {
+    return model.scene.materials.at(model.scene.parts[part].material).base_color;
+  };
+  EXPECT_NEAR(color(0).x, 0.21404, 1e-4);
+  EXPECT_EQ(color(1), layers::vec3(0, 0, 1));
+  EXPECT_EQ(color(2), layers::vec3(0, 0, 1));
+}
+
+TEST(ReadObj, CornerThatIsNotThereIsRefused) {
+  const auto refusal = [](const std::string& face) {
+    return tests::message_of([&] { read_obj_text("v 0 0 0\nv 1 0 0\nv 0 1 0\n" + face); });
+  };
+  EXPECT_THAT(refusal("f 1 2 4\n"), HasSubstr("thing.obj: "));
+  EXPECT_THAT(refusal("f 1 2 -4\n"), HasSubstr("thing.obj: "));
+}
+
+TEST(ReadObj, LinesBesideFacesAreSaid) {
+  EXPECT_THAT(read_obj_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n").warnings,
+              ElementsAre("lines are not drawn"));
+}
+
+}  // namespace
+}  // namespace talisman::sequences
