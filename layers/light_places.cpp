@@ -133,7 +133,9 @@ void add_highlight(const LightState& light, const dvec3& eye, double shininess, 
 
 void append_light_places(const LightState& light, const dvec3& eye, const MeanSurface& surface,
                          const BodySurface& body, std::vector<SurfacePlace>& places) {
-  if (light.kind == Light::Kind::Ambient || !layers::is_finite(light.position) || !layers::is_finite(light.direction)) return;
+  if (light.kind == Light::Kind::Ambient || !layers::is_finite(light.position) ||
+      !layers::is_finite(light.direction))
+    return;
   if (light.kind == Light::Kind::Spot) add_cone(light, body, places);
   const bool has_feet = light.kind == Light::Kind::Point;
   if (!has_feet && !surface.has_specular()) return;

@@ -52,7 +52,7 @@ Column<RunRow> of_run(std::string name, std::string unit, std::string meaning, G
 
 /// Null in a run that was only planned.
 template <typename Get>
-Column<RunRow> measured(std::string name, std::string unit, std::string meaning, Get get) {
+Column<RunRow> run_measured(std::string name, std::string unit, std::string meaning, Get get) {
   Column<RunRow> column = of_run(std::move(name), std::move(unit), std::move(meaning), get);
   column.get = [](const RunRow& row) {
     return row.summary.planned_only ? Value(Null{}) : value_of(Get{}(row));
@@ -106,71 +106,72 @@ RunColumns run_work() {
       of_run(
           "pixels_reference", "texels", "what `reference` would draw",
           [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.pixels.reference; }); }),
-      measured(
+      run_measured(
           "pixels_filled", "texels", "writes by the renderer, and texels of shadow maps",
           [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.pixels.filled; }); }),
-      measured("pixels_composited", "pixels", "reads of sprites by the compositor",
-               [](const RunRow& r) {
-                 return total_of(r, [](const FrameLine& l) { return l.pixels.composited; });
-               }),
-      measured(
+      run_measured("pixels_composited", "pixels", "reads of sprites by the compositor",
+                   [](const RunRow& r) {
+                     return total_of(r, [](const FrameLine& l) { return l.pixels.composited; });
+                   }),
+      run_measured(
           "chunks_rendered", "32×32 chunks", "in which something was drawn",
           [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.chunks.rendered; }); }),
-      measured(
+      run_measured(
           "chunks_clear", "32×32 chunks", "of the sprites rendered, in which nothing was",
           [](const RunRow& r) { return total_of(r, [](const FrameLine& l) { return l.chunks.clear; }); }),
-      measured("depth_complexity", "",
-               "pixels_filled over pixels_rendered: below 1 where rectangles are clear",
-               [](const RunRow& r) {
-                 const double texels = static_cast<double>(r.summary.pixels_rendered());
-                 const auto filled = total_of(r, [](const FrameLine& l) { return l.pixels.filled; });
-                 return texels > 0 ? static_cast<double>(filled) / texels : 0;
-               }),
+      run_measured("depth_complexity", "",
+                   "pixels_filled over pixels_rendered: below 1 where rectangles are clear",
+                   [](const RunRow& r) {
+                     const double texels = static_cast<double>(r.summary.pixels_rendered());
+                     const auto filled = total_of(r, [](const FrameLine& l) { return l.pixels.filled; });
+                     return texels > 0 ? static_cast<double>(filled) / texels : 0;
+                   }),
       of_run("frames_deferred", "frames", "in which something was put off for want of budget",
              [](const RunRow& r) { return r.summary.frames_deferred; }),
       place("effects")};
 }
 
 template <typename Get>
-Column<RunRow> sorting(const char* name, const char* unit, const char* meaning, Get get) {
+Column<RunRow> run_sorting(const char* name, const char* unit, const char* meaning, Get get) {
   return computed<RunRow>(std::string("visibility_") + name, std::string("visibility/") + name, unit, meaning,
                           get);
 }
 
 RunColumns run_visibility() {
-  return {sorting("frames_sorted", "frames", "in which layers were sorted",
+  return {
+      run_sorting("frames_sorted", "frames", "in which layers were sorted",
                   [](const RunRow& r) { return r.visibility.frames; }),
-          sorting("frames_with_cycles", "frames", "in which layers occluded each other in a cycle",
+      run_sorting("frames_with_cycles", "frames", "in which layers occluded each other in a cycle",
                   [](const RunRow& r) { return r.visibility.cyclic_frames; }),
-          sorting("queries", "bodies", "whose possible occluders were looked up",
+      run_sorting("queries", "bodies", "whose possible occluders were looked up",
                   [](const RunRow& r) { return r.visibility.queries; }),
-          sorting("pairs", "pairs", "of bodies that extents cannot tell apart in view",
+      run_sorting("pairs", "pairs", "of bodies that extents cannot tell apart in view",
                   [](const RunRow& r) { return r.visibility.pairs; }),
-          sorting("exact_tests", "pairs", "of these, tested on the hulls",
+      run_sorting("exact_tests", "pairs", "of these, tested on the hulls",
                   [](const RunRow& r) { return r.visibility.exact_tests; }),
-          sorting("swaps", "layers", "that moved within last frame's line",
+      run_sorting("swaps", "layers", "that moved within last frame's line",
                   [](const RunRow& r) { return r.visibility.swaps; }),
-          sorting("merged_layers", "layers", "that shared a sprite",
+      run_sorting("merged_layers", "layers", "that shared a sprite",
                   [](const RunRow& r) { return r.visibility.merged_layers; }),
-          sorting("merged_parts", "parts", "of the merged sprites",
+      run_sorting("merged_parts", "parts", "of the merged sprites",
                   [](const RunRow& r) { return r.visibility.merged_parts; }),
-          sorting("resolved_components", "components", "cycles that an expression of the compositor shows",
+      run_sorting("resolved_components", "components", "cycles that an expression of the compositor shows",
                   [](const RunRow& r) { return r.resolved.components; }),
-          sorting("resolved_layers", "layers", "in these", [](const RunRow& r) { return r.resolved.layers; }),
-          sorting("expression_registers", "registers", "images that one expression keeps at once, at most",
+      run_sorting("resolved_layers", "layers", "in these", [](const RunRow& r) { return r.resolved.layers; }),
+      run_sorting("expression_registers", "registers", "images that one expression keeps at once, at most",
                   [](const RunRow& r) { return r.resolved.registers; }),
-          sorting("expression_operators", "operators", "evaluated by the expressions, each over an image",
+      run_sorting("expression_operators", "operators", "evaluated by the expressions, each over an image",
                   [](const RunRow& r) { return r.resolved.operators; }),
-          sorting("expression_reads", "reads", "of sprites by the expressions",
+      run_sorting("expression_reads", "reads", "of sprites by the expressions",
                   [](const RunRow& r) { return r.resolved.reads; })};
 }
 
 RunColumns modelled() {
-  return {measured("modelled_ms", "ms", "modelled time of a frame, mean over the frames",
-                   [](const RunRow& r) {
-                     const double frames = static_cast<double>(r.summary.frames.size());
-                     return frames > 0 ? r.summary.total(&FrameLine::modelled_ms) / frames : 0;
-                   }),
+  return {run_measured("modelled_ms", "ms", "modelled time of a frame, mean over the frames",
+                       [](const RunRow& r) {
+                         const double frames = static_cast<double>(r.summary.frames.size());
+                         return frames > 0 ? r.summary.total(&FrameLine::modelled_ms) / frames : 0;
+                       }),
           of_run("modelled_profile", "", "on this hardware",
                  [](const RunRow&) { return regulator::talisman_1996().name; })};
 }
