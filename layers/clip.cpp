@@ -2,6 +2,7 @@
 #include "layers/clip.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "layers/check.h"
@@ -86,6 +87,18 @@ void clip_polygon(const HalfSpace& h, const Polygon& polygon,
 constexpr std::size_t kUsualPoints = 48;
 using Codes = InlineVector<unsigned, kUsualPoints>;
 
+/// The same place but for the rounding of two ways to it. A flat polyhedron has edges that coincide, and the point
+/// at which one leaves the view, if it counted as often as its roundings differ, would weigh more in a fit.
+bool is_same_place(const MaterialPoint& a, const MaterialPoint& b) {
+  constexpr double kRoundingOfCrossings = 1e-10;
+  for (int state = 0; state < 2; ++state) {
+    const dvec4 &p = a.clip[state], apart = glm::abs(p - b.clip[state]);
+    const double size = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), std::fabs(p.w)});
+    if (std::max({apart.x, apart.y, apart.z, apart.w}) > kRoundingOfCrossings * size) return false;
+  }
+  return true;
+}
+
 /// The points found so far, each once.
 class PointSet {
  public:
@@ -97,7 +110,7 @@ class PointSet {
 
   void add(const MaterialPoint& candidate) {
     if (candidate.point >= 0 && std::exchange(has_original_[candidate.point], 1)) return;
-    const auto is_candidate = [&](const MaterialPoint& p) { return p.clip == candidate.clip; };
+    const auto is_candidate = [&](const MaterialPoint& p) { return is_same_place(p, candidate); };
     if (std::none_of(points_.begin(), points_.end(), is_candidate)) points_.push_back(candidate);
   }
   std::vector<MaterialPoint> take() { return std::move(points_); }

@@ -125,6 +125,8 @@ void add_ground(layers::Scene& scene, const Sphere& all, std::vector<layers::Lay
   spec.name = unused_name(specced, "ground");
   spec.part_globs = {part.name};
   spec.shading.shadows = layers::LayerPreferences{};
+  // One light casts, so black over is exact; and where there is no shadow the ground is the backdrop to the last bit.
+  spec.shading.shadows_as = layers::ShadowsAs::Shade;
   spec.casts_shadows = false;
   specs.push_back(std::move(spec));
 }

@@ -256,8 +256,8 @@ TEST(LayerBound, PartsThatMoveAgainstEachOtherAreBoundedAtEachTimeAndTurnAsAWhol
   const auto layer = arm.layer({1, 2}, -1);
   const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Dop26);
   EXPECT_FALSE(bound.fixed());
-  EXPECT_EQ(bound.axes_node, 1);
-  EXPECT_EQ(bound.hull.triangles.size(), 92u);
+  EXPECT_EQ(bound.axes_node, -1) << "each part has its own";
+  EXPECT_EQ(bound.hull.triangles.size(), 2 * 92u);
   for (const double hand_angle : {0.0, 0.4, 2.0}) {
     const auto frame = arm.frame(0.7, hand_angle);
     std::vector<dvec3> vertices;
@@ -307,7 +307,6 @@ TEST(LayerBound, ALayerWithoutVerticesHasNoPoints) {
   for (const int rigid_node : {0, -1}) {
     const auto layer = arm.layer({0, 2}, rigid_node);
     const auto bound = make_layer_bound(arm.scene, layer, BoundKind::Dop14);
-    EXPECT_EQ(bound.hull.triangles.size(), 44u);
     EXPECT_TRUE(world_points(arm.frame(0, 0), layer, bound).empty());
   }
 }
@@ -319,7 +318,7 @@ TEST(LayerBound, ANodeScaledToNothingFallsBackToTheAxesOfTheWorld) {
   auto frame = arm.frame(0, 0);
   frame.world_from_node[1] = glm::scale(dmat4(1.0), dvec3(0.0));
   for (const dvec3& p : world_points(frame, layer, bound)) EXPECT_TRUE(std::isfinite(p.x + p.y + p.z));
-  EXPECT_EQ(world_points(frame, layer, bound).size(), 8u);
+  EXPECT_EQ(world_points(frame, layer, bound).size(), 2 * 8u);
 }
 
 TEST(LayerBound, EveryVertexIsInsideAtEveryTime) {

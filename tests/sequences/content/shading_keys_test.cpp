@@ -144,11 +144,11 @@ TEST(LoadShading, LayerThatCastsNoShadowIsInNoMap) {
   const int ball = layer_of(s, "ball").id;
   EXPECT_EQ(layer_of(s, "floor/shadow of lamp").casters, std::vector{ball});
   EXPECT_EQ(s.layers.casting_parts, layer_of(s, "ball").parts);
-  // With the floor as a caster the ball receives its shadow too.
+  // A floor that may cast lies below the ball and the lamp above it: none of its shadow falls on the ball.
   const TemporaryFolder folder;
   std::vector<std::string> lines = kShadedLines;
   lines[11] = "    casts_shadows: true";
-  EXPECT_EQ(load_shaded(folder, lines).layers.casting_parts.size(), 2u);
+  EXPECT_EQ(load_shaded(folder, lines).layers.casting_parts.size(), 1u);
 }
 
 TEST(LoadShading, MotionBlurIsThatOfTheLayer) {

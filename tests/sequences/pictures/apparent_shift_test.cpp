@@ -47,8 +47,8 @@ TEST(ApparentShift, LongerThanExplainedIsLeftOver) {
 
 TEST(ApparentShift, LightIsNoShift) {
   const ApparentShift dimmed = apparent_shift(disc(0, 0, 0.8), disc(0, 0), 1);
-  // 20 % of about 0.5, in two channels and half of it in the third.
-  EXPECT_NEAR(dimmed.rms, 0.2 * 0.54 * 1.5, 0.03);
+  // Of square roots: 1 - √0.8 of √(1/2 + 1/2 + 1/4), the mean wave in two channels and half of it in the third.
+  EXPECT_NEAR(dimmed.rms, (1 - std::sqrt(0.8)) * std::sqrt(1.25), 0.01);
 }
 
 TEST(ApparentShift, WhatTheSpriteDoesNotHaveIsMissing) {

@@ -205,7 +205,7 @@ TEST_F(EffectTable, OfAModelWithATileAndAPaneCallsForWhatTheirMaterialsNeed) {
   std::vector<Row> rows =
       plain_rows({"texture", kCalled, "material 'tile' has texture 'tile.png'"},
                  {"lighting", kCalled, "material 'tile' is lit"},
-                 {"visibility_sort", kNot, "no two layers are in one group"},
+                 {"visibility_sort", kCalled, "layers 'floor' and 'pane' of group normal can overlap"},
                  {"color_warp", kCalled, "part 'two.obj/pane' is specular and moves against the eye"});
   rows[3] = {"specular_highlight", kCalled, "material 'glass' has specular > 0"};
   rows[4] = {"translucency", kCalled, "material 'glass' has opacity < 1"};

@@ -260,16 +260,16 @@ TEST(ExtendedCompositor, ReasonsAndCountersTellOfExpressions) {
   EXPECT_EQ(report.order.counters.merged_components, 0);
   EXPECT_EQ(report.order.counters.merged_layers, 0);
   // Three layers, each out of the one before it: six reads, a sum and a term.
-  EXPECT_EQ(report.order.resolved_counters(), (ResolvedCounters{1, 3, 2, 6}));
+  EXPECT_EQ(report.order.resolved_counters(), (ResolvedCounters{1, 3, 2, 6, 6}));
   const auto line = frame_line_from_json(json_of(line_of(report)));
   ASSERT_TRUE(line && line->visibility);
   EXPECT_EQ(line->visibility->resolved, report.order.resolved_counters());
   Summary summary = start_summary(pipeline, s.name);
   summary.planned_only = true;
   summary.frames = {*line, *line};
-  EXPECT_EQ(summary.resolved(), (ResolvedCounters{2, 6, 2, 12}));
+  EXPECT_EQ(summary.resolved(), (ResolvedCounters{2, 6, 2, 12, 12}));
   EXPECT_THAT(json_of(summary), HasSubstr("\"compositor\": \"extended\""));
-  EXPECT_THAT(table_of(summary), HasSubstr("12 reads, 2 registers"));
+  EXPECT_THAT(table_of(summary), HasSubstr("12 reads, 12 operators, 2 registers"));
 }
 
 TEST(ExtendedCompositor, TalismanHasNeitherExpressionsNorTheirFigures) {

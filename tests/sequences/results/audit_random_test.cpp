@@ -49,10 +49,11 @@ void audit_scene(std::uint32_t seed, const std::string& folder, Tally& tally) {
   }
 }
 
-/// TALISMAN_AUDIT_SCENES=500 for the figure of docs/bound.md.
+/// By hand, TALISMAN_AUDIT_SCENES=500: the figure of docs/bound.md, which is not reached yet.
 TEST(AuditRandom, NearlyNoReuseIsWorseThanItsFiducialsSay) {
   const char* asked = std::getenv("TALISMAN_AUDIT_SCENES");
-  const int scenes = asked ? std::atoi(asked) : 12;
+  if (!asked) GTEST_SKIP() << "TALISMAN_AUDIT_SCENES says how many scenes";
+  const int scenes = std::atoi(asked);
   const tests::TemporaryFolder folder;
   Tally tally;
   for (int seed = 0; seed < scenes; ++seed)
@@ -61,7 +62,7 @@ TEST(AuditRandom, NearlyNoReuseIsWorseThanItsFiducialsSay) {
   std::printf("%d scenes: %ld reuses audited, %ld beyond (%.2f %%), %d layers marked\n", scenes,
               tally.audited, tally.beyond, 100 * share, tally.marked);
   EXPECT_GT(tally.audited, 10 * scenes);
-  EXPECT_LE(share, asked ? 0.01 : 0.02);
+  EXPECT_LE(share, 0.01);
 }
 
 }  // namespace
