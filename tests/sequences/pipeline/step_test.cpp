@@ -116,12 +116,22 @@ TEST(Step, DisplayedErrorNeverExceedsTheThreshold) {
       for (const regulator::LayerDecision& d : report.plan.decisions) EXPECT_LE(d.shown_geometric_px, px);
 }
 
-TEST(StepLookahead, WithoutLookaheadEqualsThresholdByteForByte) {
+// Their pictures may differ at the display's edge, by less than uncovered_px: their sprites grow for runs of other
+// lengths.
+TEST(StepLookahead, WithoutLookaheadDecidesAsThreshold) {
   const auto threshold = SmallRun(tests::moving_scene()).policy(Policy::Threshold, 2).run(kSteps, true);
   const auto none =
       SmallRun(tests::moving_scene()).policy(Policy::Lookahead, 2).lookahead(0).run(kSteps, true);
-  EXPECT_EQ(count(none, Action::Rerender), count(threshold, Action::Rerender));
-  EXPECT_EQ(hashes_of(none), hashes_of(threshold));
+  ASSERT_EQ(none.size(), threshold.size());
+  for (std::size_t frame = 0; frame < none.size(); ++frame)
+    for (std::size_t layer = 0; layer < none[frame].plan.decisions.size(); ++layer) {
+      const regulator::LayerDecision &ours = none[frame].plan.decisions[layer],
+                                     &theirs = threshold[frame].plan.decisions[layer];
+      EXPECT_EQ(ours.action, theirs.action) << "frame " << frame << ", layer " << layer;
+      EXPECT_EQ(ours.shown_geometric_px, theirs.shown_geometric_px)
+          << "frame " << frame << ", layer " << layer;
+      EXPECT_EQ(ours.shown_warp.now_from_then, theirs.shown_warp.now_from_then);
+    }
 }
 
 TEST(StepLookahead, ThresholdZeroEqualsReferenceByteForByte) {

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sequences/content/sequence.h"
 #include "sequences/pipeline/make_pipeline.h"
 #include "tests/sequences/small_run.h"
 #include "tests/sequences/temporary_folder.h"
@@ -40,13 +41,16 @@ TEST(AuditedReuse, SaysWhichFiducialWasTooSmall) {
   EXPECT_EQ((AuditedReuse{.rms = 0.2, .missing = 0.1}.should_have_spoken()), "visibility");
 }
 
-TEST(Auditor, RigidLayersWithinTheirBoundAreNotMarked) {
+TEST(Auditor, MarksOfTheMovingSceneOnlyItsLargePlane) {
   const tests::TemporaryFolder folder;
   const SmallRun small = SmallRun(tests::moving_scene()).policy(regulator::Policy::Threshold, 2);
   const std::vector<LayerAudit> audits = audit_of(small, 40, 3, folder.path() + "/audit");
   int audited = 0;
   for (const LayerAudit& audit : audits) {
-    EXPECT_FALSE(audit.marked()) << audit.layer << ": " << audit.worst.should_have_spoken();
+    // The ground, flat and large, is seen in perspective: between its corners, which alone are judged, an affine warp
+    // is off by more than at them (docs/bound.md).
+    EXPECT_EQ(audit.marked(), audit.layer == "ground")
+        << audit.layer << ": " << audit.worst.should_have_spoken();
     EXPECT_EQ(audit.audited, audit.reuses / 3);
     EXPECT_EQ(std::filesystem::exists(folder.path() + "/audit/" + audit.sheet), audit.audited > 0);
     audited += audit.audited;
@@ -55,9 +59,17 @@ TEST(Auditor, RigidLayersWithinTheirBoundAreNotMarked) {
 }
 
 TEST(Auditor, MarksALayerWhoseInnerMotionItsBoundDoesNotSee) {
-  // All parts in one layer with one box around them and no material points: cube and moon move unseen.
+  // An arm turns before a torso, in one layer with one box around both and no material points: nothing sees it.
   const tests::TemporaryFolder folder;
-  SmallRun small(tests::moving_scene());
+  const std::string man =
+      folder.write("man.yaml",
+                   "frames: 40\n"
+                   "shapes:\n"
+                   "  - {id: torso, box: [1, 2, 0.6], color: \"#40d040\"}\n"
+                   "  - {id: arm, box: [0.3, 1.6, 0.3], color: \"#d04040\", position: [0, 0, 0.5],"
+                   " spin: {axis: [0, 0, 1], deg_per_s: 45}}\n"
+                   "camera: {fov_deg: 40, position: [0, 0, 6], look_at: [0, 0, 0]}\n");
+  SmallRun small{layers::Scene(*load_sequence(man).scene)};
   layers::LayerSpec all{"all", {"*"}, layers::OrderGroup::Normal, {}};
   all.preferences.bound_each_part = false;
   small.layers = layers::factor(small.scene, {&all, 1});
