@@ -57,7 +57,8 @@ TEST_F(RegulatorReportFiles, CsvHasOneFullLinePerSettingWithFiniteNumbers) {
         continue;
       }
       if (rows[0][c].rfind("popping", 0) == 0 && rows[k][c].empty()) {
-        EXPECT_EQ(report().settings[k - 1].popping.frames_with_steps, 0) << "only where nothing was drawn again";
+        EXPECT_EQ(report().settings[k - 1].popping.frames_with_steps, 0)
+            << "only where nothing was drawn again";
         continue;
       }
       EXPECT_TRUE(!rows[k][c].empty() && std::isfinite(std::stod(rows[k][c]))) << rows[0][c] << " line " << k;

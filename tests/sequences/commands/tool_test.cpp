@@ -177,7 +177,8 @@ TEST_F(Tool, SeparateTakesNoValueAndOnlyRenderHasIt) {
 }
 
 TEST_F(Tool, SeparateOfAModelWithoutShadeLayersWritesNoPicture) {
-  const Outcome outcome = run("render cube.obj --no-stage --separate --out o --frames 0-1 --size 64x48 --progress none");
+  const Outcome outcome =
+      run("render cube.obj --no-stage --separate --out o --frames 0-1 --size 64x48 --progress none");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_TRUE(files_in("o/separate").empty());
 }
