@@ -100,7 +100,8 @@ TEST_F(EffectTable, OfTheStageCallsForAllShading) {
   EXPECT_EQ(users_of(sequence_, layers::Effect::SpecularLayer), "floor/specular, ball/specular");
   EXPECT_EQ(users_of(sequence_, layers::Effect::TextureLayers), "floor/texture 2");
   EXPECT_EQ(users_of(sequence_, layers::Effect::Skinning), "figure");
-  EXPECT_EQ(users_of(sequence_, layers::Effect::ColorWarp), "wall, floor, mobile, figure, ball, glass");
+  EXPECT_EQ(users_of(sequence_, layers::Effect::ColorWarp),
+            "wall, floor, mobile, figure, ball, ball/light of spot, glass");
 }
 
 TEST_F(EffectTable, OfTheStageUnfactoredHasNoShadeLayer) {
