@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws frame 12 of ten boxes that turn, as the compositor shows it, into boxes.ppm: sprites of earlier frames are
-// warped where that is good enough.
+// Draws frame 12 of ten boxes that turn, as the compositor shows it: sprites of earlier frames are warped where that
+// is good enough. The picture goes to standard output, what it is made of to standard error:
+//   render_a_frame > boxes.ppm
 #include <talisman/chunker/composite.h>
 #include <talisman/sequences/pipeline/make_pipeline.h>
 #include <talisman/sequences/pipeline/step.h>
 
 #include <cstdio>
-#include <fstream>
 
 #include "boxes.h"
 
@@ -24,10 +24,10 @@ int main() {
   const sequences::FrameReport report = sequences::step(pipeline, state, 12, &prepared);
 
   const std::vector<std::uint8_t> rgb = chunker::srgb_bytes(report.picture);
-  std::ofstream file("boxes.ppm", std::ios::binary);
-  file << "P6\n" << report.picture.width << " " << report.picture.height << "\n255\n";
-  file.write(reinterpret_cast<const char*>(rgb.data()), static_cast<std::streamsize>(rgb.size()));
-  std::printf("boxes.ppm: %dx%d pixels, %zu sprites, %d of them planned in earlier frames\n",
-              report.picture.width, report.picture.height, report.shown.size(), report.late_renders);
-  return file ? 0 : 1;
+  std::printf("P6\n%d %d\n255\n", report.picture.width, report.picture.height);
+  const bool is_whole =
+      std::fwrite(rgb.data(), 1, rgb.size(), stdout) == rgb.size() && std::fflush(stdout) == 0;
+  std::fprintf(stderr, "%dx%d pixels, %zu sprites, %d of them planned in earlier frames\n",
+               report.picture.width, report.picture.height, report.shown.size(), report.late_renders);
+  return is_whole ? 0 : 1;
 }
