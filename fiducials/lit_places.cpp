@@ -93,9 +93,9 @@ class Pairs {
 
   void add_light_places() {
     if (then_.lights.size() != now_.lights.size()) return;
+    const bool eye_moved = bound_.surface->has_specular() && then_.eye() != now_.eye();
     for (std::size_t body = 0; body < bodies_; ++body) {
       const Carry forward(then_, now_, body, points_per_body_), back(now_, then_, body, points_per_body_);
-      const bool eye_moved = bound_.surface->has_specular() && then_.eye() != now_.eye();
       for (std::size_t l = 0; l < now_.lights.size(); ++l)
         if (!forward.is_still() || eye_moved || then_.lights[l] != now_.lights[l])
           add_places(body, l, forward, back);

@@ -15,6 +15,13 @@ struct Views {
   ViewHalfSpaces then, now;
 };
 
+/// The place of a characteristic point on the display: as it was captured, where nothing was cut off.
+dvec2 place_of(const LayerState& state, std::size_t point) {
+  const bool is_captured = state.in_view() && !state.clipped;
+  return is_captured ? state.screen_points[point]
+                     : screen_from_clip(state.clip_points[point], state.view.display_px);
+}
+
 /// The fastest motion per frame of the characteristic points that are on the display now, as far as that is a
 /// small part of the display.
 double motion_in_one_frame(const LayerState& then, const LayerState& now, int frames) {
@@ -24,8 +31,7 @@ double motion_in_one_frame(const LayerState& then, const LayerState& now, int fr
   double fastest = 0;
   for (std::size_t i = 0; i < now.clip_points.size(); ++i) {
     if (outcode(display, now.clip_points[i]) != 0 || !(then.clip_points[i].w > then.camera.near_m)) continue;
-    const dvec2 path = screen_from_clip(now.clip_points[i], now.view.display_px) -
-                       screen_from_clip(then.clip_points[i], then.view.display_px);
+    const dvec2 path = place_of(now, i) - place_of(then, i);
     fastest = std::max(fastest, std::hypot(path.x, path.y));
   }
   return std::min(fastest / std::max(frames, 1), kMost * std::max(size.x, size.y));
@@ -74,7 +80,8 @@ void reserve(std::size_t count, Correspondences& matched) {
 void match_characteristic_points(const LayerState& then, const LayerState& now, Correspondences& matched) {
   reserve(now.clip_points.size(), matched);
   for (std::size_t i = 0; i < now.clip_points.size(); ++i)
-    match(then.clip_points[i], now.clip_points[i], static_cast<int>(i), then, now, matched);
+    if (then.clip_points[i].w > then.camera.near_m && now.clip_points[i].w > now.camera.near_m)
+      add(place_of(then, i), place_of(now, i), static_cast<int>(i), matched);
 }
 
 void match_all(const std::vector<MaterialPoint>& points, const LayerState& then, const LayerState& now,
