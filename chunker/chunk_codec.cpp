@@ -92,10 +92,13 @@ int predicted_alpha(const Block& alpha, int i, int before) {
   return std::clamp(a + b - c, std::min(a, b), std::max(a, b));
 }
 
+/// As a byte with a sign: modulo 256, -128 … 127.
+int wrapped(int difference) { return ((difference + 128) & 255) - 128; }
+
 void write_alpha(const Block& alpha, int before, BitWriter& out) {
   Block difference;
   for (int i = 0; i < kBlockTexels; ++i)
-    difference[i] = static_cast<std::int8_t>(alpha[i] - predicted_alpha(alpha, i, before));
+    difference[i] = wrapped(alpha[i] - predicted_alpha(alpha, i, before));
   out.put_sparse(difference);
 }
 

@@ -125,9 +125,9 @@ HWY_INLINE void cover_box(const EdgeSet& edges, const LatticeBox& box, Coverage&
   }
 }
 
-void Cover1(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<1>(edges, box, out); }
-void Cover4(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<4>(edges, box, out); }
-void Cover16(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<16>(edges, box, out); }
+void cover_1(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<1>(edges, box, out); }
+void cover_4(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<4>(edges, box, out); }
+void cover_16(const EdgeSet& edges, const LatticeBox& box, Coverage& out) { cover_box<16>(edges, box, out); }
 
 }  // namespace talisman::chunker::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -170,21 +170,21 @@ bool may_cover(const EdgeSet& edges, const LatticeBox& box) {
   return true;
 }
 
-HWY_EXPORT(Cover1);
-HWY_EXPORT(Cover4);
-HWY_EXPORT(Cover16);
+HWY_EXPORT(cover_1);
+HWY_EXPORT(cover_4);
+HWY_EXPORT(cover_16);
 
 template <>
 void cover<1>(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
-  HWY_DYNAMIC_DISPATCH(Cover1)(edges, box, out);
+  HWY_DYNAMIC_DISPATCH(cover_1)(edges, box, out);
 }
 template <>
 void cover<4>(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
-  HWY_DYNAMIC_DISPATCH(Cover4)(edges, box, out);
+  HWY_DYNAMIC_DISPATCH(cover_4)(edges, box, out);
 }
 template <>
 void cover<16>(const EdgeSet& edges, const LatticeBox& box, Coverage& out) {
-  HWY_DYNAMIC_DISPATCH(Cover16)(edges, box, out);
+  HWY_DYNAMIC_DISPATCH(cover_16)(edges, box, out);
 }
 
 }  // namespace talisman::chunker

@@ -11,7 +11,7 @@ HWY_BEFORE_NAMESPACE();
 namespace talisman::chunker::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-void EncodeRow(const float* colors, int channels, std::uint8_t* bytes) {
+void encode_row_of_target(const float* colors, int channels, std::uint8_t* bytes) {
   const hn::CappedTag<float, 16> d;
   const hn::RebindToSigned<decltype(d)> di;
   const hn::Rebind<std::uint8_t, decltype(d)> d8;
@@ -36,14 +36,14 @@ HWY_AFTER_NAMESPACE();
 namespace talisman::chunker {
 namespace {
 
-HWY_EXPORT(EncodeRow);
+HWY_EXPORT(encode_row_of_target);
 constexpr int kGroup = 4;  ///< texels of the widest lane group
 
 }  // namespace
 
 void encode_row(const Float4* colors, int count, Texel* texels) {
   const int whole = count / kGroup * kGroup;
-  HWY_DYNAMIC_DISPATCH(EncodeRow)
+  HWY_DYNAMIC_DISPATCH(encode_row_of_target)
   (reinterpret_cast<const float*>(colors), whole * 4, reinterpret_cast<std::uint8_t*>(texels));
   for (int i = whole; i < count; ++i)
     texels[i] = encode({colors[i][0], colors[i][1], colors[i][2], colors[i][3]});

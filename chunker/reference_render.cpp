@@ -91,6 +91,7 @@ std::vector<Float4> samples_of(const DrawList& list, const std::vector<int>& pla
       if (inside[s]) surfaces[s].push_back({depth_at(plane, places[s]), order, color});
   }
   std::vector<Float4> samples;
+  samples.reserve(surfaces.size());
   for (std::vector<Surface>& of_sample : surfaces) samples.push_back(composite_front_to_back(of_sample));
   return samples;
 }

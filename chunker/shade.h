@@ -118,7 +118,7 @@ struct AttributeLayout {
 
 /// What belongs to an effect is a constant where the build lacks it (layers/built_effects.h).
 struct Shader {
-  template <layers::Effect kEffect, typename T, T kAbsent = T{}>
+  template <layers::Effect kEffect, typename T, int kAbsent = 0>
   using Of = layers::ValueOf<kEffect, T, kAbsent>;
   using enum layers::Effect;
 
@@ -138,14 +138,14 @@ struct Shader {
   Of<Translucency, float> alpha_cutoff;          ///< 0: none
   Of<Translucency, bool> vertex_alpha;
   float shininess = 0;
-  Of<Translucency, float, 1.0f> opacity;
+  Of<Translucency, float, 1> opacity;
   Of<MipFilter, bool> mipmaps;
   Of<Lighting, bool> lit;        ///< the lights are evaluated: neither unlit nor ambient only
   Of<Lighting, bool> per_pixel;  ///< Phong
   Of<SpecularHighlight, bool> has_specular;
-  Of<Translucency, bool, true> opaque;  ///< alpha is exactly 1 at every pixel
-  Of<ShadowMap, bool> shadowed;         ///< shadow maps are looked up
-  Of<ShadowLayer, bool> shadow_term;    ///< the colour is (1 - s) α in red
+  Of<Translucency, bool, 1> opaque;   ///< alpha is exactly 1 at every pixel
+  Of<ShadowMap, bool> shadowed;       ///< shadow maps are looked up
+  Of<ShadowLayer, bool> shadow_term;  ///< the colour is (1 - s) α in red
   Of<Texture, bool> two_textures;
   TextureFilter filter = TextureFilter::Trilinear;
   int max_anisotropy = 1;

@@ -71,6 +71,7 @@ Shown shown_part(const LayerState& state, std::vector<dvec4> polygon) {
   for (const layers::HalfSpace& h : layers::view_half_spaces(state.camera.near_m, 0, 0))
     polygon = clipped(std::move(polygon), h);
   std::vector<dvec2> corners;
+  corners.reserve(polygon.size());
   for (const dvec4& clip : polygon) corners.push_back(layers::screen_from_clip(clip, state.view.display_px));
   Shown shown;
   for (std::size_t i = 1; i + 1 < corners.size(); ++i) {

@@ -43,9 +43,18 @@ consteval bool is_built(Effect effect) {
   return !is_listed(name(effect), TALISMAN_WITHOUT);
 }
 
+/// A whole number as a T; 0 is T{}, so null where T is a pointer.
+template <typename T, int kNumber>
+consteval T constant_of() {
+  if constexpr (kNumber == 0)
+    return T{};
+  else
+    return static_cast<T>(kNumber);
+}
+
 /// A value that only an effect gives a meaning. In a build without the effect it is the constant `kAbsent`
 /// and takes no room, so that whatever depends on it folds away.
-template <Effect kEffect, typename T, T kAbsent = T{}, bool kBuilt = is_built(kEffect)>
+template <Effect kEffect, typename T, int kAbsent = 0, bool kBuilt = is_built(kEffect)>
 class ValueOf {
  public:
   constexpr ValueOf() = default;
@@ -54,16 +63,16 @@ class ValueOf {
   constexpr T operator->() const { return value_; }
 
  private:
-  T value_ = kAbsent;
+  T value_ = constant_of<T, kAbsent>();
 };
 
-template <Effect kEffect, typename T, T kAbsent>
+template <Effect kEffect, typename T, int kAbsent>
 class ValueOf<kEffect, T, kAbsent, false> {
  public:
   constexpr ValueOf() = default;
   constexpr ValueOf(T) {}
-  constexpr operator T() const { return kAbsent; }
-  constexpr T operator->() const { return kAbsent; }
+  constexpr operator T() const { return constant_of<T, kAbsent>(); }
+  constexpr T operator->() const { return constant_of<T, kAbsent>(); }
 };
 
 }  // namespace talisman::layers

@@ -87,18 +87,6 @@ void clip_polygon(const HalfSpace& h, const Polygon& polygon,
 constexpr std::size_t kUsualPoints = 48;
 using Codes = InlineVector<unsigned, kUsualPoints>;
 
-/// The same place but for the rounding of two ways to it. A flat polyhedron has edges that coincide, and the point
-/// at which one leaves the view, if it counted as often as its roundings differ, would weigh more in a fit.
-bool is_same_place(const MaterialPoint& a, const MaterialPoint& b) {
-  constexpr double kRoundingOfCrossings = 1e-10;
-  for (int state = 0; state < 2; ++state) {
-    const dvec4 &p = a.clip[state], apart = glm::abs(p - b.clip[state]);
-    const double size = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), std::fabs(p.w)});
-    if (std::max({apart.x, apart.y, apart.z, apart.w}) > kRoundingOfCrossings * size) return false;
-  }
-  return true;
-}
-
 /// The points found so far, each once.
 class PointSet {
  public:
@@ -136,9 +124,11 @@ Codes outcodes(std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
   return codes;
 }
 
+using Visit = std::function<void(std::span<const MaterialPoint>)>;
+
 /// `crossed`: bits of the half-spaces that cut something off this polygon.
 void clip_to_crossed(std::span<const HalfSpace> half_spaces, unsigned crossed, Polygon& polygon,
-                     Polygon& spare, PointSet& points) {
+                     Polygon& spare, const Visit& visit) {
   Polygon* current = &polygon;
   Polygon* next = &spare;
   std::array<double, Polygon::kCapacity> distances;
@@ -148,7 +138,7 @@ void clip_to_crossed(std::span<const HalfSpace> half_spaces, unsigned crossed, P
     clip_polygon(half_spaces[h], *current, distances, *next);
     std::swap(current, next);
   }
-  for (int i = 0; i < current->count; ++i) points.add(current->vertices[i]);
+  if (current->count > 0) visit({current->vertices.data(), static_cast<std::size_t>(current->count)});
 }
 
 }  // namespace
@@ -170,25 +160,39 @@ unsigned outcode(const ViewHalfSpaces& view, const dvec4& clip) {
   return code;
 }
 
-std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> triangles,
-                                        std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
-                                        std::span<const HalfSpace> half_spaces) {
+bool is_same_place(const MaterialPoint& a, const MaterialPoint& b) {
+  constexpr double kRoundingOfCrossings = 1e-10;
+  for (int state = 0; state < 2; ++state) {
+    const dvec4 &p = a.clip[state], apart = glm::abs(p - b.clip[state]);
+    const double size = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), std::fabs(p.w)});
+    if (std::max({apart.x, apart.y, apart.z, apart.w}) > kRoundingOfCrossings * size) return false;
+  }
+  return true;
+}
+
+void clip_polygons(std::span<const std::array<int, 3>> triangles, std::span<const dvec4> clip_0,
+                   std::span<const dvec4> clip_1, std::span<const HalfSpace> half_spaces,
+                   const Visit& visit) {
   TALISMAN_CHECK_EQ(clip_0.size(), clip_1.size());
   TALISMAN_CHECK_LE(half_spaces.size(), 32u);
   const auto codes = outcodes(clip_0, clip_1, half_spaces);
-  PointSet points(clip_0.size());
   Polygon polygon, spare;
   for (const auto& triangle : triangles) {
     const unsigned a = codes[triangle[0]], b = codes[triangle[1]], c = codes[triangle[2]];
     if (a & b & c) continue;
-    if ((a | b | c) == 0) {
-      for (const int i : triangle) points.add({{clip_0[i], clip_1[i]}, i});
-      continue;
-    }
     polygon.count = 0;
     for (const int i : triangle) polygon.push({{clip_0[i], clip_1[i]}, i});
-    clip_to_crossed(half_spaces, a | b | c, polygon, spare, points);
+    clip_to_crossed(half_spaces, a | b | c, polygon, spare, visit);
   }
+}
+
+std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> triangles,
+                                        std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
+                                        std::span<const HalfSpace> half_spaces) {
+  PointSet points(clip_0.size());
+  clip_polygons(triangles, clip_0, clip_1, half_spaces, [&](std::span<const MaterialPoint> polygon) {
+    for (const MaterialPoint& vertex : polygon) points.add(vertex);
+  });
   return points.take();
 }
 

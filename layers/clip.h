@@ -17,6 +17,7 @@
 /// display.
 
 #include <array>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -54,11 +55,22 @@ struct MaterialPoint {
   int point = -1;             ///< index of the vertex of the polyhedron, or -1 for a point made by clipping
 };
 
+/// The same place but for the rounding of two ways to it. A flat polyhedron has edges that coincide, and the
+/// point at which one leaves the view, if it counted as often as its roundings differ, would weigh more in a
+/// fit.
+bool is_same_place(const MaterialPoint& a, const MaterialPoint& b);
+
+/// Calls `visit` with what the half-spaces leave of each triangle, a convex polygon, in the order of the
+/// triangles; not where nothing is left. At most 32 half-spaces. Cost: O(triangles · half-spaces) for triangles
+/// that cross a plane, O(1) for the others.
+void clip_polygons(std::span<const std::array<int, 3>> triangles, std::span<const dvec4> clip_0,
+                   std::span<const dvec4> clip_1, std::span<const HalfSpace> half_spaces,
+                   const std::function<void(std::span<const MaterialPoint>)>& visit);
+
 /// The vertices of the polyhedron's surface clipped to all `half_spaces`: original vertices inside, crossings
 /// of edges, and places where an edge of the view pierces a triangle. Each once, in the order of the
-/// triangles. `clip_0` and `clip_1` are the vertices of the polyhedron in the two states (equal sizes). At
-/// most 32 half-spaces. Cost: O(triangles · half-spaces) for triangles that cross a plane, O(1) for the
-/// others.
+/// triangles. `clip_0` and `clip_1` are the vertices of the polyhedron in the two states (equal sizes). Cost: as
+/// clip_polygons.
 std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> triangles,
                                         std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
                                         std::span<const HalfSpace> half_spaces);

@@ -5,6 +5,7 @@
 
 #include "layers/check.h"
 #include "layers/clip.h"
+#include "layers/foreshortening.h"
 #include "layers/state.h"
 
 namespace talisman::layers {
@@ -100,14 +101,59 @@ void match_material_points(const LayerState& then, const LayerState& now, const 
             now, matched);
 }
 
-std::vector<MaterialPoint> in_both_views(const LayerState& then, const LayerState& now, const Views& views,
-                                         const Polyhedron& hull) {
-  std::array<HalfSpace, 2 * kViewHalfSpaces> half_spaces;
+using BothViews = std::array<HalfSpace, 2 * kViewHalfSpaces>;
+
+BothViews both_views(const Views& views) {
+  BothViews half_spaces;
   for (int i = 0; i < kViewHalfSpaces; ++i) {  // both near planes first: beyond them nothing is huge
     half_spaces[2 * i] = views.then[i];
     half_spaces[2 * i + 1] = views.now[i];
   }
-  return clip_surface(hull.triangles, then.clip_points, now.clip_points, half_spaces);
+  return half_spaces;
+}
+
+double diagonal_px(std::span<const dvec2> points) {
+  RectD bounds;
+  for (const dvec2& p : points) bounds.include(p);
+  return bounds.empty() ? 0 : std::hypot(bounds.hi.x - bounds.lo.x, bounds.hi.y - bounds.lo.y);
+}
+
+/// How the depths of the corners have changed, now over then.
+struct DepthRatios {
+  double least = HUGE_VAL, most = 0;
+  void include(const dvec4& clip_then, const dvec4& clip_now) {
+    const double ratio = clip_now.w / clip_then.w;
+    least = std::min(least, ratio);
+    most = std::max(most, ratio);
+  }
+};
+
+/// Places between the corners that the corners' motion does not explain (layers/foreshortening.h).
+/// `half_spaces`: those that clipped the surface; none where it is whole.
+void match_bowed_places(const LayerState& then, const LayerState& now, const Polyhedron& hull,
+                        std::span<const HalfSpace> half_spaces, const DepthRatios& ratios,
+                        Correspondences& matched) {
+  if (!can_bow(ratios.least, ratios.most, diagonal_px(matched.now_px))) return;
+  match_all(bowed_places(hull.triangles, then.clip_points, now.clip_points, half_spaces, now.view.display_px),
+            then, now, matched);
+}
+
+void match_whole_surface(const LayerState& then, const LayerState& now, const Polyhedron& hull,
+                         Correspondences& matched) {
+  match_characteristic_points(then, now, matched);
+  DepthRatios ratios;
+  for (std::size_t i = 0; i < now.clip_points.size(); ++i)
+    ratios.include(then.clip_points[i], now.clip_points[i]);
+  match_bowed_places(then, now, hull, {}, ratios, matched);
+}
+
+void match_clipped_surface(const LayerState& then, const LayerState& now, const Polyhedron& hull,
+                           const BothViews& half_spaces, Correspondences& matched) {
+  const auto points = clip_surface(hull.triangles, then.clip_points, now.clip_points, half_spaces);
+  match_all(points, then, now, matched);
+  DepthRatios ratios;
+  for (const MaterialPoint& p : points) ratios.include(p.clip[0], p.clip[1]);
+  match_bowed_places(then, now, hull, half_spaces, ratios, matched);
 }
 
 std::vector<MaterialPoint> in_either_view(const LayerState& then, const LayerState& now, const Views& views,
@@ -128,9 +174,9 @@ Correspondences correspond(const LayerState& then, const LayerState& now, const 
   TALISMAN_CHECK_EQ(then.clip_points.size(), now.clip_points.size());
   const Views views = views_of(then, now, frames);
   if (is_wholly_in_view(then, now, views))
-    match_characteristic_points(then, now, matched);
+    match_whole_surface(then, now, hull, matched);
   else
-    match_all(in_both_views(then, now, views, hull), then, now, matched);
+    match_clipped_surface(then, now, hull, both_views(views), matched);
   matched.overlap = !matched.point.empty();
   if (!matched.overlap) match_all(in_either_view(then, now, views, hull), then, now, matched);
   match_material_points(then, now, views, matched);

@@ -7,17 +7,10 @@
 
 #include "layers/check.h"
 #include "layers/polyhedron.h"
+#include "layers/vectors.h"
 
 namespace talisman::layers {
 namespace {
-
-/// Scaled by its largest entry first: areas of a huge or tiny polyhedron have squares that over- or
-/// underflow.
-dvec3 direction_or_zero(const dvec3& v) {
-  const double largest = std::max({std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
-  if (!(largest > 0 && std::isfinite(largest))) return dvec3(0.0);
-  return normalize(v / largest);
-}
 
 /// Calls visit(face, area) for each face in order.
 template <typename Visit>

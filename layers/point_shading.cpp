@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t kMostTexelsRead = 65536;
 
-/// One test for all three: what is not finite leaves no finite difference from itself.
+/// As direction_or_zero, for every point and light of a plan: without its scaling, which only lengths beyond
+/// 1e±150 need.
 dvec3 unit_or_zero(const dvec3& v) {
   const double length = glm::length(v);
   return length > 0 && std::isfinite(length) ? v * (1 / length) : dvec3(0.0);

@@ -129,7 +129,7 @@ std::string alpha_defect(const Mesh& mesh) {
 std::string morph_defect(const Mesh& mesh) {
   const std::size_t n = mesh.positions.size();
   for (const MorphTarget& morph : mesh.morphs) {
-    const std::string defect = first_of(
+    std::string defect = first_of(
         {optional_length("morph positions", morph.positions.size(), n),
          optional_length("morph normals", morph.normals.size(), mesh.normals.size()),
          finite_array("morph position", morph.positions), finite_array("morph normal", morph.normals)});

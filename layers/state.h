@@ -17,9 +17,10 @@
 /// part, so that no error rises with larger extents. Content that was not in the old sprite is the business
 /// of the visibility fiducial, not of the fit.
 ///
-/// To these come the material points of what deforms (layers/surface_samples.h), as far as they are in
-/// both views: the vertices of its polyhedron are those of its bounds, which may stand still
-/// while it moves. A body that deforms is judged by an estimate, then; a rigid one has none of them.
+/// To these come, where depths have changed so unequally that it shows, the places between them that move
+/// otherwise than an affine map of the corners says (layers/foreshortening.h), and the material points of what
+/// deforms (layers/surface_samples.h), as far as they are in both views: the vertices of its polyhedron are
+/// those of its bounds, which may stand still while it moves. A body that deforms is judged by an estimate, then; a rigid one has none of them.
 ///
 /// Where no part is in both views there is nothing to fit. Then `overlap` is false, and the points are those
 /// that are in view in either state, however far away they are in the other: the error they give is large,
@@ -152,11 +153,10 @@ struct Correspondences {
   static constexpr std::size_t kRoom = 24;
   InlineVector<dvec2, kRoom> then_px;
   InlineVector<dvec2, kRoom> now_px;
-  InlineVector<int, kRoom>
-      point;             ///< index of the characteristic point, -1 for a point made by clipping; the
-                         ///< material points are counted behind the characteristic ones
-  bool overlap = false;  ///< some part of the polyhedron is in both views; false:
-                         ///< nothing of what the old sprite shows is in view now, and no warp of it can serve
+  InlineVector<int, kRoom> point;  ///< index of the characteristic point, -1 for a point between them; the
+                                   ///< material points are counted behind the characteristic ones
+  bool overlap = false;            ///< some part of the polyhedron is in both views; false:
+      ///< nothing of what the old sprite shows is in view now, and no warp of it can serve
 };
 
 /// How far outside the display then, in displays, a point may have been that is matched now: as far as extents

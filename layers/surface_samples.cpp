@@ -20,11 +20,6 @@ constexpr double kLargeShare = 1.0 / 256;
 constexpr int kMostCells = 8;  ///< of the grid inside one triangle, along each side
 constexpr std::size_t kMostCandidates = 20'000;
 
-dvec3 unit_normal_or_zero(const dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 && std::isfinite(length) ? v / length : dvec3(0.0);
-}
-
 using CornerIndices = std::array<std::uint32_t, 3>;
 
 double area_of_corners(const std::vector<dvec3>& positions, const CornerIndices& t) {
@@ -191,7 +186,7 @@ std::vector<std::size_t> chosen_of(const Candidates& candidates, std::size_t cou
 }
 
 SurfacePlace place_of(const SurfaceSample& sample, const dvec3* corner, double sign) {
-  const dvec3 normal = unit_normal_or_zero(cross(corner[1] - corner[0], corner[2] - corner[0]));
+  const dvec3 normal = direction_or_zero(cross(corner[1] - corner[0], corner[2] - corner[0]));
   return {sample.weight.x * corner[0] + sample.weight.y * corner[1] + sample.weight.z * corner[2],
           sign * normal};
 }
@@ -213,6 +208,7 @@ std::vector<SurfaceSample> spread_samples(const Scene& scene, std::span<const in
   std::vector<std::size_t> chosen = chosen_of(candidates, static_cast<std::size_t>(count));
   std::sort(chosen.begin(), chosen.end());  // candidates are in the order of the parts
   std::vector<SurfaceSample> result;
+  result.reserve(chosen.size());
   for (const std::size_t i : chosen) result.push_back(samples[i]);
   return result;
 }

@@ -210,9 +210,8 @@ double expected_reuse_frames(const RegulatorOptions& options, double threshold_d
   switch (options.policy) {
     case Policy::Direct:
     case Policy::Reference:
+    case Policy::Hold:  // shown where it was: nothing new can come into view
       return 0;
-    case Policy::Hold:
-      return 0;  // shown where it was: nothing new can come into view
     case Policy::Interpolate:
       return options.hold_frames - 1;
     case Policy::Threshold:

@@ -96,7 +96,6 @@ int points_needed(Family family) {
     case Family::Translation:
       return 1;
     case Family::Isotropic:
-      return 2;
     case Family::XyScale:
       return 2;
     case Family::Affine:
@@ -108,9 +107,10 @@ int points_needed(Family family) {
 }
 
 int first_bad_point(std::span<const dvec2> points) {
-  bool good = true;  // without branches: nearly always all are good
-  for (const dvec2& p : points) good &= is_good(p.x) & is_good(p.y);
-  if (good) return -1;
+  unsigned bad_ones = 0;  // without branches: nearly always all are good
+  for (const dvec2& p : points)
+    bad_ones |= static_cast<unsigned>(!is_good(p.x)) | static_cast<unsigned>(!is_good(p.y));
+  if (bad_ones == 0) return -1;
   const auto bad = [](const dvec2& p) { return !is_good(p.x) || !is_good(p.y); };
   const auto found = std::find_if(points.begin(), points.end(), bad);
   return static_cast<int>(found - points.begin());

@@ -17,7 +17,7 @@ int run_solver_accuracy(const AccuracyOptions& options, std::ostream& out) {
   if (options.inputs < 1 || options.inputs > 100000)
     throw InputError("--inputs " + std::to_string(options.inputs) + ", rule: 1 … 100000");
   const ProgressKind progress = choice("--progress", options.progress, kProgressWords);
-  create_folder(options.out);
+  prepare_folder(options.out);
   const MeasuredSolvers solvers = measure_solvers(options.inputs, progress);
   write_report(solvers, options.out);
   print_report(solvers, out);

@@ -10,7 +10,7 @@
 namespace talisman::sequences {
 
 int run_hard_accuracy(const std::string& dir, ProgressKind progress, std::ostream& out) {
-  create_folder(dir);
+  prepare_folder(dir);
   const HardReport report = measure_hard_report(progress);
   write_report(report, dir);
   print_report(report, out);

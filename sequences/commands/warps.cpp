@@ -20,7 +20,7 @@ int run_warps(const WarpsOptions& options, std::ostream& out) {
     objects = load_warp_objects(missing);
   else
     objects.push_back(load_warp_object(options.object));
-  create_folder(options.out);
+  prepare_folder(options.out);
   WarpReport report = measure_warps(std::move(objects), std::move(missing), bound, progress);
   report.bound = options.bound;
   write_report(report, options.out);

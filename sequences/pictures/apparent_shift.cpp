@@ -129,6 +129,25 @@ cv::Mat2f shift_of(const cv::Mat4f& shown, const cv::Mat4f& fresh, int coarser) 
   return shift;
 }
 
+/// Where a part of a displacement does as well, but for what nobody sees, it is that part.
+void shorten_where_less_will_do(const cv::Mat4f& shown, const cv::Mat4f& fresh, cv::Mat2f& shift) {
+  constexpr float kUnseen = 1.0f / 255, kAsWell = 1.1f;
+  const auto squares = [&](const cv::Mat2f& d) {
+    const cv::Mat4f error = displaced(shown, d) - fresh;
+    return summed(error, error);
+  };
+  const cv::Mat1f least = squares(shift);
+  cv::Mat2f shortest = shift.clone();
+  for (const double part : {0.75, 0.5, 0.25, 0.0}) {
+    const cv::Mat2f shorter = shift * part;
+    const cv::Mat1f with = squares(shorter);
+    for (int y = 0; y < shift.rows; ++y)
+      for (int x = 0; x < shift.cols; ++x)
+        if (with(y, x) <= kAsWell * least(y, x) + kUnseen * kUnseen) shortest(y, x) = shorter(y, x);
+  }
+  shift = shortest;
+}
+
 int levels_for(double explained_px) {
   constexpr double kSearched_px = 4, kPerLevel_px = 1.5;
   const double reach = std::min(std::max(2 * explained_px, kSearched_px), 64.0);
@@ -160,19 +179,59 @@ void shorten(double longest, cv::Mat2f& shift) {
   }
 }
 
-void measure_rest(const cv::Mat4f& shown, const cv::Mat4f& fresh, ApparentShift& result) {
-  cv::Mat4f a, b;
-  cv::GaussianBlur(shown, a, {}, 1, 1, cv::BORDER_REPLICATE);
-  cv::GaussianBlur(fresh, b, {}, 1, 1, cv::BORDER_REPLICATE);
+/// Beside the displacement that was found: of a structure finer than the window no one displacement is right.
+constexpr double kBeside_px = 1;
+
+/// ‖shown at x + d - fresh at x‖² of the colours, and what is shown there.
+struct Rest {
+  cv::Mat1f squares, shown_alpha;
+};
+
+Rest rest_of(const cv::Mat4f& shown, const cv::Mat4f& fresh) {
+  Rest rest{cv::Mat1f(fresh.size()), cv::Mat1f(fresh.size())};
+  for (int y = 0; y < fresh.rows; ++y)
+    for (int x = 0; x < fresh.cols; ++x) {
+      const cv::Vec4f d = shown(y, x) - fresh(y, x);
+      rest.squares(y, x) = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+      rest.shown_alpha(y, x) = shown(y, x)[3];
+    }
+  return rest;
+}
+
+/// The least of it over the displacements found and those about kBeside_px beside them, none longer than
+/// `longest_px`.
+Rest least_rest(const cv::Mat4f& shown, const cv::Mat4f& fresh, const cv::Mat2f& shift, double longest_px) {
+  cv::Mat2f within = shift.clone();
+  shorten(longest_px, within);
+  Rest least = rest_of(displaced(shown, within), fresh);
+  const auto beside = static_cast<float>(std::min(kBeside_px, longest_px));
+  if (beside == 0) return least;
+  for (int dy = -1; dy <= 1; ++dy)
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (dx == 0 && dy == 0) continue;
+      const float share = beside / std::hypot(static_cast<float>(dx), static_cast<float>(dy));
+      cv::Mat2f near = within + cv::Scalar(share * static_cast<float>(dx), share * static_cast<float>(dy));
+      shorten(longest_px, near);
+      least.squares = cv::min(least.squares, rest_of(displaced(shown, near), fresh).squares);
+    }
+  return least;
+}
+
+void measure_rest(const cv::Mat4f& linear_shown, const cv::Mat4f& linear_fresh, const cv::Mat2f& shift,
+                  double explained_px, ApparentShift& result) {
+  cv::Mat4f shown, fresh;
+  cv::GaussianBlur(linear_shown, shown, {}, 1, 1, cv::BORDER_REPLICATE);
+  cv::GaussianBlur(linear_fresh, fresh, {}, 1, 1, cv::BORDER_REPLICATE);
+  const Rest rest = least_rest(shown, fresh, shift, explained_px);
   double squares = 0;
   long seen = 0, solid = 0, missing = 0;
-  for (int y = 0; y < a.rows; ++y)
-    for (int x = 0; x < a.cols; ++x) {
-      const cv::Vec4f p = a(y, x), q = b(y, x), d = p - q;
-      solid += q[3] > kSolid;
-      missing += q[3] > kSolid && p[3] < kNothing;
-      if (p[3] < kSeen && q[3] < kSeen) continue;
-      squares += static_cast<double>(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+  for (int y = 0; y < fresh.rows; ++y)
+    for (int x = 0; x < fresh.cols; ++x) {
+      const float of_shown = rest.shown_alpha(y, x), of_fresh = fresh(y, x)[3];
+      solid += of_fresh > kSolid;
+      missing += of_fresh > kSolid && of_shown < kNothing;
+      if (of_shown < kSeen && of_fresh < kSeen) continue;
+      squares += static_cast<double>(rest.squares(y, x));
       ++seen;
     }
   if (seen > 0) result.rms = std::sqrt(squares / static_cast<double>(seen));
@@ -188,10 +247,11 @@ ApparentShift apparent_shift(const chunker::Frame& shown, const chunker::Frame& 
   if (result.seen.width == 0) return result;
   const cv::Mat4f linear_shown = linear_of(shown, result.seen), linear_fresh = linear_of(fresh, result.seen);
   const cv::Mat4f eye_fresh = perceived(linear_fresh);
-  cv::Mat2f shift = shift_of(perceived(linear_shown), eye_fresh, levels_for(explained_px));
+  const cv::Mat4f eye_shown = perceived(linear_shown);
+  cv::Mat2f shift = shift_of(eye_shown, eye_fresh, levels_for(explained_px));
+  shorten_where_less_will_do(eye_shown, eye_fresh, shift);
   measure_shift(eye_fresh, shift, result);
-  shorten(explained_px, shift);
-  measure_rest(displaced(linear_shown, shift), linear_fresh, result);
+  measure_rest(linear_shown, linear_fresh, shift, explained_px, result);
   return result;
 }
 

@@ -113,7 +113,7 @@ DiffReport diff(const DiffOptions& options) {
     throw InputError(std::string("is a ") + (folder ? "folder" : "file") + " but " + options.b +
                          " is not, rule: two of a kind",
                      options.a);
-  if (!options.map_dir.empty()) create_folder(options.map_dir);
+  if (!options.map_dir.empty()) prepare_folder(options.map_dir);
   if (folder) return diff_folders(options);
   return {{diff_files(fs::path(options.a).stem().string(), options.a, options.b, options)}, {}, {}};
 }

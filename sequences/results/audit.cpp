@@ -2,6 +2,7 @@
 #include "sequences/results/audit.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "sequences/files/folders.h"
@@ -53,6 +54,29 @@ Image8 over_grey(chunker::Frame frame, const Crop& crop) {
     p = {add(p.r), add(p.g), add(p.b), static_cast<std::uint16_t>(chunker::kOne)};
   }
   return cropped(to_image8(frame), crop);
+}
+
+/// Over the pixels of `crop` that are covered by half in either frame.
+double psnr_of_layer(const chunker::Frame& shown, const chunker::Frame& fresh, const Crop& crop) {
+  const Image8 a = over_grey(shown, crop), b = over_grey(fresh, crop);
+  double squares = 0;
+  long covered = 0;
+  for (int y = 0; y < crop.height; ++y)
+    for (int x = 0; x < crop.width; ++x) {
+      const auto in_frame = static_cast<std::size_t>(y + crop.y) * static_cast<std::size_t>(fresh.width) +
+                            static_cast<std::size_t>(x + crop.x);
+      if (2 * std::max(shown.pixels[in_frame].a, fresh.pixels[in_frame].a) < static_cast<int>(chunker::kOne))
+        continue;
+      ++covered;
+      const auto in_crop = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(crop.width) +
+                                static_cast<std::size_t>(x));
+      for (std::size_t k = in_crop; k < in_crop + 3; ++k) {
+        const double d = a.rgb[k] - b.rgb[k];
+        squares += d * d;
+      }
+    }
+  if (squares == 0) return HUGE_VAL;
+  return 10 * std::log10(255.0 * 255.0 * 3.0 * static_cast<double>(covered) / squares);
 }
 
 std::string sheet_name(std::string layer) {
@@ -124,8 +148,10 @@ void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameRe
                        seen.p95_px,
                        seen.rms,
                        seen.missing,
-                       0};
+                       0,
+                       psnr_of_layer(shown, fresh, seen.seen)};
     ++kept.audit.audited;
+    kept.audit.all.push_back(reuse);
     kept.audit.beyond += reuse.beyond();
     if (kept.audit.worst.frame >= 0 && reuse.excess() <= kept.audit.worst.excess()) continue;
     if (seen.seen.width > 0) {
@@ -140,7 +166,7 @@ std::vector<LayerAudit> Auditor::finish() {
   std::vector<LayerAudit> audits;
   for (Kept& kept : layers_) {
     if (kept.fresh.width > 0) {
-      create_folder(folder_);
+      prepare_folder(folder_);
       kept.audit.sheet = sheet_name(kept.audit.layer);
       write_png(folder_ + "/" + kept.audit.sheet, sheet_of_worst(kept.audit, kept.shown, kept.fresh));
     }

@@ -43,7 +43,9 @@ struct AuditedReuse {
   double shift_px = 0;      ///< seen, 95th percentile
   double rms = 0;           ///< seen
   double missing = 0;       ///< seen: share of the layer that the sprite does not have
-  double flip = 0;          ///< mean over the layer's part of the display
+  double flip = 0;          ///< mean over the layer's part of the display; of the worst frame only
+  double psnr_db = 0;  ///< over the pixels that the layer covers by half in either picture, both over grey;
+                       ///< infinite where they are the same
   /// In units of the slack, ≤ 1: not beyond.
   double excess() const;
   bool beyond() const { return excess() > 1; }
@@ -53,10 +55,11 @@ struct AuditedReuse {
 /// One layer over the run.
 struct LayerAudit {
   std::string layer;
-  int reuses = 0;               ///< of the run
-  int audited = 0, beyond = 0;  ///< frames
-  AuditedReuse worst;           ///< with the largest excess
-  std::string sheet;            ///< file name in DIR/audit; empty: none
+  int reuses = 0;                 ///< of the run
+  int audited = 0, beyond = 0;    ///< frames
+  AuditedReuse worst;             ///< with the largest excess
+  std::vector<AuditedReuse> all;  ///< the audited ones, by frame
+  std::string sheet;              ///< file name in DIR/audit; empty: none
   bool marked() const { return beyond >= kFramesToMark; }
 };
 

@@ -214,9 +214,9 @@ TEST(Correspond, InViewItIsTheCharacteristicPointsInOrder) {
     const World world(cloud, kind);
     const auto matched =
         correspond(world.at(moved_by({0, 0, -8})), world.at(moved_by({0.5, 0, -9})), world.bound.hull);
-    ASSERT_EQ(matched.point.size(), world.bound.hull.points.size());
+    ASSERT_GE(matched.point.size(), world.bound.hull.points.size());
     EXPECT_TRUE(matched.overlap);
-    for (std::size_t i = 0; i < matched.point.size(); ++i) {
+    for (std::size_t i = 0; i < world.bound.hull.points.size(); ++i) {
       EXPECT_EQ(matched.point[i], static_cast<int>(i));
       const dvec3 then = world.bound.hull.points[i] + dvec3(0, 0, -8);
       EXPECT_LT(glm::length(matched.then_px[i] - project(dmat4(1.0), world.view, {}, then)), 1e-9);
@@ -401,31 +401,52 @@ TEST(Correspond, HowFarSpritesReachChangesNoPoint) {
   }
 }
 
-TEST(Correspond, ALayerEntersAndLeavesWithoutAJump) {
-  // A slab that turns as it crosses the display in 40 frames, seen at a twentieth of a frame's steps: as its
-  // corners come in and go out, and what is left of it at the borders loses its spread, the error of one
-  // frame's warp changes steadily.
+/// The largest errors and the largest changes of error between steps of a hundredth of a frame, as shares of the
+/// motion in one frame: a slab that turns as it crosses the display in 40 frames, so that its corners come in and
+/// go out, and what is left of it at the borders loses its spread.
+struct Crossing {
+  int seen = 0;
+  double largest_share = 0, largest_jump_share = 0;
+};
+
+Crossing crossing_of_the_display(warp::Curve curve) {
   const World world(box_corners({1, 1.5, 0.3}));
   const auto place = [](double frame) {
     return moved_by({-7 + 0.35 * frame, 0.4, -9}) * turned_by(0.02 * frame, {0, 1, 0.2});
   };
-  int seen = 0;
+  Crossing crossing;
   double before = 0;
-  for (int step = 0; step < 20 * 40; ++step) {
-    const double frame = step / 20.0;
+  for (int step = 0; step < 100 * 40; ++step) {
+    const double frame = step / 100.0;
     const LayerState then = world.at(place(frame)), now = world.at(place(frame + 1));
     if (!then.touches_display || !now.touches_display) continue;
     const auto matched = correspond(then, now, world.bound.hull);
-    ASSERT_TRUE(matched.overlap) << frame;
-    const auto fitted = warp::fit(matched.then_px, matched.now_px, warp::Curve::aff);
-    ASSERT_TRUE(fitted.usable()) << frame;
-    if (seen++ > 0) {
-      EXPECT_LT(std::fabs(fitted.max_px - before), 1) << frame;  // of 2 px of motion
-    }
+    EXPECT_TRUE(matched.overlap) << frame;
+    const auto fitted = warp::fit(matched.then_px, matched.now_px, curve);
+    EXPECT_TRUE(fitted.usable()) << frame;
+    const double motion = largest_motion(matched);
+    if (crossing.seen++ > 0)
+      crossing.largest_jump_share =
+          std::max(crossing.largest_jump_share, std::fabs(fitted.max_px - before) / motion);
     before = fitted.max_px;
-    EXPECT_LT(fitted.max_px, 7) << frame;
+    crossing.largest_share = std::max(crossing.largest_share, fitted.max_px / motion);
   }
-  EXPECT_GT(seen, 20 * 25);
+  return crossing;
+}
+
+TEST(Correspond, ALayerEntersAndLeavesWithoutAJump) {
+  const Crossing crossing = crossing_of_the_display(warp::Curve::affi);
+  EXPECT_GT(crossing.seen, 100 * 25);
+  EXPECT_LT(crossing.largest_share, 0.2);
+  EXPECT_LT(crossing.largest_jump_share, 0.005);
+}
+
+TEST(Correspond, ALeastSquaresFitSeesACornerLeaveAsTheCrossingsThatTakeItsPlace) {
+  // Where a corner goes out, up to six edges are cut beside it, each a point of its own: it weighs more, and the
+  // mean moves. The points are in the same places, so the error is larger by a few percent of the motion only.
+  const Crossing crossing = crossing_of_the_display(warp::Curve::aff);
+  EXPECT_LT(crossing.largest_share, 0.2);
+  EXPECT_LT(crossing.largest_jump_share, 0.05);
 }
 
 TEST(ViewHalfSpaces, NotANumberIsOutsideOfAll) {

@@ -86,8 +86,8 @@ TEST(EffectNames, AreThoseOfTheTableInItsOrder) {
 
 // The same class as a build with and without the effect sees it.
 TEST(ValueOf, IsAConstantWhereTheEffectIsNotBuilt) {
-  layers::ValueOf<Effect::Translucency, float, 1.0f, true> built;
-  layers::ValueOf<Effect::Translucency, float, 1.0f, false> left_out;
+  layers::ValueOf<Effect::Translucency, float, 1, true> built;
+  layers::ValueOf<Effect::Translucency, float, 1, false> left_out;
   EXPECT_EQ(float(built), 1.0f);
   built = 0.25f;
   left_out = 0.25f;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sequences/files/folders.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
@@ -111,6 +112,16 @@ TEST(RemoveAbandonedFiles, FoldersAndLinksOfThatNameStay) {
   remove_abandoned_files(folder.path());
   EXPECT_EQ(files_in(folder.path()).size(), 2u);
   remove_abandoned_files(folder.path() + "/no such folder");
+}
+
+TEST(PrepareFolder, OfAnyCommandIsFreeOfWhatAKilledOneLeft) {
+  const tests::TemporaryFolder folder;
+  const std::string out = folder.path() + "/maps";
+  prepare_folder(out);
+  folder.write("maps/0001.png", "kept");
+  folder.write("maps/.tmp-999999999-1-0-0002.png", "half");
+  prepare_folder(out);
+  EXPECT_EQ(files_in(out), Names{"0001.png"});
 }
 
 }  // namespace

@@ -46,9 +46,45 @@ TEST(ApparentShift, LongerThanExplainedIsLeftOver) {
 }
 
 TEST(ApparentShift, LightIsNoShift) {
-  const ApparentShift dimmed = apparent_shift(disc(0, 0, 0.8), disc(0, 0), 1);
-  // Of square roots: 1 - √0.8 of √(1/2 + 1/2 + 1/4), the mean wave in two channels and half of it in the third.
-  EXPECT_NEAR(dimmed.rms, (1 - std::sqrt(0.8)) * std::sqrt(1.25), 0.01);
+  const ApparentShift dimmed = apparent_shift(disc(0, 0, 0.8), disc(0, 0), 0);
+  // 0.2 of the waves (mean square 1/4 + 0.02 + 0.02) in two channels and of half of them in the third.
+  EXPECT_NEAR(dimmed.rms, 0.2 * std::sqrt(2.25 * 0.29), 0.01);
+  // A pixel of displacement explains at most what the waves change in a pixel: 0.2 (1/5 + 1/17 + 1/6), halved by
+  // their phases.
+  const double most = 0.5 * 0.2 * (1.0 / 5 + 1.0 / 17 + 1.0 / 6) * 1.5;
+  EXPECT_GT(apparent_shift(disc(0, 0, 0.8), disc(0, 0), 1).rms, dimmed.rms - most);
+}
+
+TEST(ApparentShift, OfASoftLightThatPassesOverAnEvenSurfaceIsNone) {
+  // A wide, weak ramp moves by 5 px: what is seen is less than a code value of light, not a displacement.
+  const auto ramp = [](double moved) {
+    chunker::Frame frame{120, 90, {}};
+    for (int y = 0; y < frame.height; ++y)
+      for (int x = 0; x < frame.width; ++x) {
+        const double light = 0.5 + 0.05 * std::sin((x - moved) / 40);
+        const auto c = static_cast<std::uint16_t>(light * chunker::kOne);
+        frame.pixels.push_back({c, c, c, static_cast<std::uint16_t>(chunker::kOne)});
+      }
+    return frame;
+  };
+  const ApparentShift passed = apparent_shift(ramp(5), ramp(0), 0.1);
+  EXPECT_LT(passed.p95_px, 0.5);
+  EXPECT_NEAR(passed.rms, 0.05 * 5 / 40 * std::sqrt(3.0 / 2), 0.003);
+}
+
+TEST(ApparentShift, AlongAStraightEdgeIsTheMotionAcross) {
+  const auto edge = [](double moved_x, double moved_y) {
+    chunker::Frame frame{120, 90, {}};
+    for (int y = 0; y < frame.height; ++y)
+      for (int x = 0; x < frame.width; ++x) {
+        const double across = (x + 0.5 - 60 - moved_x) * 0.8 + (y + 0.5 - 45 - moved_y) * 0.6;
+        const auto c = static_cast<std::uint16_t>(std::clamp(0.5 + across, 0.1, 0.9) * chunker::kOne);
+        frame.pixels.push_back({c, c, c, static_cast<std::uint16_t>(chunker::kOne)});
+      }
+    return frame;
+  };
+  EXPECT_NEAR(apparent_shift(edge(2, 0), edge(0, 0), 2).mean_px, 1.6, 0.25);  // 2 · 0.8
+  EXPECT_LT(apparent_shift(edge(3, -4), edge(0, 0), 2).p95_px, 0.1);          // along it
 }
 
 TEST(ApparentShift, WhatTheSpriteDoesNotHaveIsMissing) {
