@@ -41,10 +41,17 @@ layers::InlineVector<Side, 4> cut_sides(const SpritePlacement& placement) {
 }
 
 /// The part of the display that the layer may cover.
-RectD visible_rect(const LayerState& state) {
-  const RectD display{
-      {0, 0}, {static_cast<double>(state.view.display_px.x), static_cast<double>(state.view.display_px.y)}};
-  return intersection(display, state.screen_bounds_px);
+struct Visible {
+  layers::Polygon2 outline;
+  RectD bounds;
+  dvec2 centre() const { return (bounds.lo + bounds.hi) / 2.0; }
+};
+
+Visible visible_part(const LayerState& state) {
+  const RectD display{{0, 0}, dvec2(state.view.display_px)};
+  Visible visible{layers::clip_to_rect(layers::convex_hull(state.screen_points), display), {}};
+  for (const dvec2& p : visible.outline) visible.bounds.include(p);
+  return visible;
 }
 
 struct Depth {
@@ -52,16 +59,15 @@ struct Depth {
   dvec2 where_px{0, 0};
 };
 
-Depth depth_beyond(const Side& side, const RectD& visible) {
-  const dvec2 centre = (visible.lo + visible.hi) / 2.0;
+Depth depth_beyond(const Side& side, const Visible& visible) {
+  const dvec2 centre = visible.centre();
   const double length = glm::length(side.to - side.from);
-  if (visible.empty() || !(length > 0)) return {0, centre};
+  if (visible.outline.empty() || !(length > 0)) return {0, centre};
   const dvec2 along = (side.to - side.from) / length;
   dvec2 outward{-along.y, along.x};
   if (glm::dot(outward, side.inside - side.from) > 0) outward = -outward;
-  layers::Polygon2 uncovered{
-      visible.lo, {visible.hi.x, visible.lo.y}, visible.hi, {visible.lo.x, visible.hi.y}};
-  uncovered = layers::clip_to_half_plane(uncovered, outward, glm::dot(outward, side.from));
+  layers::Polygon2 uncovered =
+      layers::clip_to_half_plane(visible.outline, outward, glm::dot(outward, side.from));
   uncovered = layers::clip_to_half_plane(uncovered, along, glm::dot(along, side.from));
   uncovered = layers::clip_to_half_plane(uncovered, -along, -glm::dot(along, side.to));
   Depth deepest{0, centre};
@@ -73,10 +79,10 @@ Depth depth_beyond(const Side& side, const RectD& visible) {
 }
 
 /// Beyond the horizon of a perspective warp nothing is known: all that is visible counts as uncovered.
-Depth depth_now(const Side& side, const Warp& warp, const RectD& visible) {
+Depth depth_now(const Side& side, const Warp& warp, const Visible& visible) {
   for (const dvec2& p : {side.from, side.to, side.inside})
     if (!(warp.denominator(p) > 0))
-      return {glm::length(visible.hi - visible.lo), (visible.lo + visible.hi) / 2.0};
+      return {glm::length(visible.bounds.hi - visible.bounds.lo), visible.centre()};
   return depth_beyond({warp(side.from), warp(side.to), warp(side.inside)}, visible);
 }
 
@@ -92,11 +98,11 @@ Visibility visibility_of(const LayerState& then, const LayerState& now, const Sp
                          const Warp& warp) {
   if (placement.empty()) return no_cut_sides("nothing was drawn");
   if (!placement.clipped.any()) return no_cut_sides("no side of the sprite was cut off");
-  const RectD visible_then = visible_rect(then), visible_now = visible_rect(now);
-  if (visible_now.empty()) return no_cut_sides("the layer is out of view");
+  const Visible visible_then = visible_part(then), visible_now = visible_part(now);
+  if (visible_now.outline.empty()) return no_cut_sides("the layer is out of view");
   Visibility result;
   result.computed = true;
-  result.where_px = (visible_now.lo + visible_now.hi) / 2.0;
+  result.where_px = visible_now.centre();
   for (const Side& side : cut_sides(placement)) {
     const Depth deepest = depth_now(side, warp, visible_now);
     const double gained = deepest.px - depth_beyond(side, visible_then).px;

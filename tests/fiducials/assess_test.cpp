@@ -27,6 +27,7 @@ using warp::Warp;
 LayerState state_with(const RectD& bounds) {
   LayerState state;
   state.screen_bounds_px = bounds;
+  state.screen_points = {bounds.lo, {bounds.hi.x, bounds.lo.y}, bounds.hi, {bounds.lo.x, bounds.hi.y}};
   state.touches_display = !intersection(bounds, RectD{{0, 0}, {1024, 1024}}).empty();
   return state;
 }
@@ -204,6 +205,19 @@ TEST(Visibility, AShortSideLooksOnlyStraightAcross) {
   const Visibility v =
       visibility(placed_over({{0, 0}, {300, 50}}, {.left = true}), from_affine(Family::Affine, turn));
   EXPECT_LT(v.uncovered_px, 50 * std::tan(angle) + 1);
+}
+
+// A floor that rises to the left beyond the display: its bounding box has a corner without content on it.
+TEST(Visibility, OnlyTheOutlineIsContent) {
+  LayerState state = state_with({{-1000, 200}, {1024, 1024}});
+  state.screen_points = {{-1000, 200}, {1024, 604.8}, {1024, 1024}, {-1000, 1024}};  // at x = 0: 400
+  const SpritePlacement placement = placed_over({{0, 400}, {1024, 1024}}, {.top = true});
+  warp::FitResult fitted;
+  fitted.warp = shift(0, 10);
+  const Pairs pairs = tests::moving_box(1, 8);
+  const Visibility v = assess(state, state, placement, matched(pairs), fitted).visibility;
+  EXPECT_DOUBLE_EQ(v.uncovered_px, 10);  // 0 … 400 was above the side then, and 10 more now
+  EXPECT_DOUBLE_EQ(v.where_px.x, 0);
 }
 
 TEST(Visibility, AHorizonThroughTheSpriteUncoversEverything) {
