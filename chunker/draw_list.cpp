@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 
+#include "chunker/tangent_frames.h"
 #include "chunker/transform.h"
 #include "layers/check.h"
 
@@ -46,6 +47,11 @@ class PartAssembly {
       cut ? run_vertices<true, true>() : run_vertices<true, false>();
     else
       cut ? run_vertices<false, true>() : run_vertices<false, false>();
+  }
+
+  /// Behind run_vertices().
+  void run_tangent_frames(const layers::SceneFrame& frame, const layers::Part& part) {
+    write_tangent_frames(frame, part, shader_.layout, backs_, attributes_);
   }
 
   std::vector<Block> run_triangles() const {
@@ -277,6 +283,7 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
     const bool flat = shader.lit && (options.shading == Shading::Flat || mesh.normals.empty());
     PartAssembly assembly(frame, part, *view, list.batches.back().shader, flat);
     assembly.run_vertices();
+    if (shader.normal_map != nullptr) assembly.run_tangent_frames(frame, part);
     append(assembly, assembly.run_triangles(), static_cast<std::uint32_t>(list.batches.size() - 1), list);
   }
 }

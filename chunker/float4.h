@@ -26,6 +26,10 @@ inline float dot3(Float4 a, Float4 b) {
   return (p[0] + p[1]) + p[2];
 }
 
+inline Float4 cross3(Float4 a, Float4 b) {
+  return Float4{a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0], 0};
+}
+
 /// Unit vector along the first three lanes; zero where there is no direction.
 inline Float4 normalized3(Float4 v) {
   const float squared = dot3(v, v);

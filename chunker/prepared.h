@@ -13,6 +13,7 @@ namespace talisman::chunker {
 struct PreparedScene::Impl {
   const layers::Scene* scene = nullptr;
   std::vector<Pyramid> pyramids;  ///< as many as Scene::textures
+  std::vector<Pyramid> normals;   ///< likewise, of normal textures; without any where no part asks for one
 };
 
 }  // namespace talisman::chunker

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
@@ -13,6 +14,7 @@
 #include "chunker/raster.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
+#include "layers/shading.h"
 
 namespace talisman::chunker {
 namespace {
@@ -57,6 +59,15 @@ std::map<int, bool> textures_of(const layers::Scene& scene, bool filtered) {
       if (texture >= 0 && texture < static_cast<int>(scene.textures.size()))
         used[texture] = used[texture] || coarser;
   }
+  return used;
+}
+
+/// The normal textures that parts use.
+std::set<int> normal_textures_of(const layers::Scene& scene) {
+  std::set<int> used;
+  for (const layers::Part& part : scene.parts)
+    if (part.material >= 0 && layers::has_normal_map(scene.materials[part.material], scene.meshes[part.mesh]))
+      used.insert(scene.materials[part.material].normal_texture);
   return used;
 }
 
@@ -121,6 +132,12 @@ PreparedScene::PreparedScene(const layers::Scene& scene, const RenderOptions& op
   tbb::parallel_for(std::size_t{0}, list.size(), [&](std::size_t i) {
     impl_->pyramids[list[i].first] = build_pyramid(scene.textures[list[i].first], list[i].second);
   });
+  if constexpr (!layers::is_built(layers::Effect::NormalMap)) return;
+  if (options.shading != Shading::Phong) return;
+  const std::set<int> normals = normal_textures_of(scene);
+  if (!normals.empty()) impl_->normals.resize(scene.textures.size());
+  for (const int texture : normals)
+    impl_->normals[texture] = build_normal_pyramid(scene.textures[texture], filtered);
 }
 
 PreparedScene::~PreparedScene() = default;
@@ -132,6 +149,7 @@ const layers::Scene& PreparedScene::scene() const { return *impl_->scene; }
 std::int64_t PreparedScene::texture_bytes() const {
   std::int64_t sum = 0;
   for (const Pyramid& pyramid : impl_->pyramids) sum += pyramid.bytes();
+  for (const Pyramid& pyramid : impl_->normals) sum += pyramid.bytes();
   return sum;
 }
 

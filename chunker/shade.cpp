@@ -5,6 +5,7 @@
 
 #include "chunker/shadow_map.h"
 #include "layers/check.h"
+#include "layers/shading.h"
 
 namespace talisman::chunker {
 namespace {
@@ -76,6 +77,17 @@ void choose_emission(const PreparedScene& prepared, const layers::Material& mate
     shader.emissive_map = pyramid;
 }
 
+void choose_normal_map(const PreparedScene& prepared, const layers::Material& material,
+                       const layers::Mesh& mesh, Shader& shader) {
+  if constexpr (!layers::is_built(layers::Effect::NormalMap)) return;
+  const std::vector<Pyramid>& pyramids = prepared.impl().normals;
+  if (pyramids.empty() || !shader.per_pixel || !layers::has_normal_map(material, mesh)) return;
+  const Pyramid& pyramid = pyramids[material.normal_texture];
+  if (pyramid.empty()) return;
+  shader.normal_map = &pyramid;
+  shader.normal_scale = material.normal_scale;
+}
+
 /// Does the part show anything in this term, apart from hiding what is behind it?
 bool contributes(const Shader& shader, const layers::Material& material, const ShadeInputs& inputs) {
   if (inputs.lights == LightsHeld::One && (material.unlit || shader.lights->ambient_only())) return false;
@@ -129,6 +141,10 @@ AttributeLayout choose_layout(const Shader& shader, bool vertex_colors) {
   if (vertex_colors || shader.vertex_alpha || (shader.lit && !shader.per_pixel)) layout.color = next();
   if (shader.has_specular && !shader.per_pixel) layout.specular = next();
   if (shader.per_pixel) layout.normal = next();
+  if (shader.normal_map != nullptr) {
+    layout.tangent = next();
+    layout.normal_uv = next();
+  }
   if (shader.shadowed || (shader.per_pixel && (shader.has_specular || !shader.lights->local_empty())))
     layout.position = next();
   if (!shader.shadowed || shader.per_pixel) return layout;
@@ -194,10 +210,9 @@ void for_each_light(const Shader& shader, Float4 normal, Float4 position, const 
   }
 }
 
-/// `lane`: of the first of the two coordinates in their attribute.
-Float4 look_up(const Shader& shader, const Pyramid& pyramid, const Interpolator& t, const Lambda& at,
+/// `uv`: the attribute of the coordinates; `lane`: of the first of the two in it.
+Float4 look_up(const Shader& shader, const Pyramid& pyramid, const Interpolator& t, const Lambda& at, int uv,
                int& samples, int lane = 0) {
-  const int uv = shader.layout.uv;
   const Float4 coordinate = attribute(t, at, uv);
   const float u = coordinate[lane], v = coordinate[lane + 1];
   const MipLevel& finest = pyramid.levels[0];
@@ -228,7 +243,9 @@ Lighting lighting_at(const Shader& shader, const Interpolator& t, const Lambda& 
   if (!shader.per_pixel) return interpolated_lighting(shader, t, at, visibility);
   const AttributeLayout& layout = shader.layout;
   const Float4 color = layout.color >= 0 ? attribute(t, at, layout.color) : shader.base;
-  const Float4 normal = normalized3(attribute(t, at, layout.normal));
+  [[maybe_unused]] int samples = 0;
+  const Float4 normal = shader.normal_map != nullptr ? mapped_normal(shader, t, at, samples)
+                                                     : normalized3(attribute(t, at, layout.normal));
   const Float4 position = layout.position >= 0 ? attribute(t, at, layout.position) : splat(0);
   const Lighting lighting = light(shader, normal, position, visibility);
   return {color * lighting.diffuse, lighting.specular, lighting.shadow};
@@ -294,6 +311,7 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
                        inputs.term != ShadeTerm::Reflection;
   shader.base = colored ? float4(material.base_color, 1) : Float4{0, 0, 0, 1};
   if (shown && !material.unlit) choose_lighting(material, !mesh.normals.empty(), options, inputs, shader);
+  choose_normal_map(prepared, material, mesh, shader);
   if (!colored) shader.emissive = splat(0);
   choose_emission(prepared, material, mesh, shader);
   shader.layout = choose_layout(shader, colored && !mesh.colors.empty());
@@ -363,15 +381,33 @@ Float4 with_alpha(const Shader& shader, const Interpolator& t, const Lambda& at,
 
 Float4 emission_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples) {
   if (shader.emissive_map == nullptr) return splat(1);
-  return unpremultiplied(look_up(shader, *shader.emissive_map, t, at, samples, 2));
+  return unpremultiplied(look_up(shader, *shader.emissive_map, t, at, shader.layout.uv, samples, 2));
+}
+
+Float4 mapped_normal(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples) {
+  const AttributeLayout& layout = shader.layout;
+  const Float4 normal = normalized3(attribute(t, at, layout.normal)),
+               along = attribute(t, at, layout.tangent);
+  const Float4 across = along - normal * splat(dot3(along, normal));
+  constexpr float kParallel = 1e-8f;  // squared: less of the tangent than rounding is left in the surface
+  if (!(dot3(across, across) > kParallel * dot3(along, along))) return normal;
+  const Float4 tangent = normalized3(across);
+  const Float4 bitangent = cross3(normal, tangent) * splat(along[3] < 0 ? -1.0f : 1.0f);
+  const Float4 n = look_up(shader, *shader.normal_map, t, at, layout.normal_uv, samples);
+  const float scale = shader.normal_scale;
+  const Float4 turned =
+      normalized3(tangent * splat(scale * n[0]) + bitangent * splat(scale * n[1]) + normal * splat(n[2]));
+  return dot3(turned, turned) > 0 ? turned : normal;
 }
 
 Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples) {
-  Float4 first = shader.pyramid != nullptr ? look_up(shader, *shader.pyramid, t, at, samples) : shader.texel;
+  const int uv = shader.layout.uv;
+  Float4 first =
+      shader.pyramid != nullptr ? look_up(shader, *shader.pyramid, t, at, uv, samples) : shader.texel;
   if (shader.vertex_alpha || shader.alpha_cutoff > 0) first = with_alpha(shader, t, at, first);
   if (!shader.two_textures) return first;
   const Float4 second =
-      shader.pyramid2 != nullptr ? look_up(shader, *shader.pyramid2, t, at, samples) : shader.texel2;
+      shader.pyramid2 != nullptr ? look_up(shader, *shader.pyramid2, t, at, uv, samples) : shader.texel2;
   Float4 color = first * splat(shader.blend1) + second * splat(shader.blend2 * first[3]);
   color[3] = first[3];
   return color;

@@ -36,6 +36,15 @@
 /// alpha, so that visibility is the same in every term; the shadow's (1 - s) α stands in red, and only the
 /// resolved texel is turned into what the sprite holds.
 ///
+/// A normal map (glTF 2.0, 3.9.3) turns the normal N of each pixel, in the frame of the surface's tangent:
+///
+///   T = unit(t - N (N·t)),  B = ± N × T,  N' = unit(σ x T + σ y B + z N)        (x, y, z) = 2 texel - 1
+///
+/// t, ±: tangent and sign of the vertices, interpolated; σ: the material's scale. Without a tangent N' = N. Seen
+/// from behind, a two-sided surface has all three axes turned, so that a bump is a hollow there. Means of
+/// several texels are made before the length is: what is far away is smooth, not rough. Flat and Gouraud
+/// shading have no normal at a pixel, and no normal map.
+///
 /// Light by light (LightsHeld): `Unmapped` and `One` of every light that casts add up to the term with `All` of
 /// them, texel by texel, since means of sums are sums of means.
 ///
@@ -113,6 +122,8 @@ struct AttributeLayout {
   int share = -1;     ///< Flat, Gouraud, shadow term: each map's share in the luminance of diffuse light
   int mapped = -1;    ///< Flat, Gouraud with shadows: base · vertex colour · D_l, one attribute per map
   int mapped_specular = -1;  ///< the same of the highlights: S_l
+  int tangent = -1;          ///< Phong with a normal map: the sign in the last lane
+  int normal_uv = -1;        ///< the coordinates of the normal map
   int count = 0;
 };
 
@@ -135,9 +146,10 @@ struct Shader {
   Float4 specular{0, 0, 0, 0};
   Float4 emissive{0, 0, 0, 0};
   Of<EmissiveMap, const Pyramid*> emissive_map;  ///< null: `emissive` everywhere
+  Of<NormalMap, const Pyramid*> normal_map;      ///< null: the normal of the vertices; Phong alone
   Of<Translucency, float> alpha_cutoff;          ///< 0: none
   Of<Translucency, bool> vertex_alpha;
-  float shininess = 0;
+  float shininess = 0, normal_scale = 1;
   Of<Translucency, float, 1> opacity;
   Of<MipFilter, bool> mipmaps;
   Of<Lighting, bool> lit;        ///< the lights are evaluated: neither unlit nor ambient only
@@ -252,6 +264,9 @@ Float4 texel_at(const Shader& shader, const Interpolator& t, const Lambda& at, i
 
 /// The emissive texture at a point, not premultiplied; 1 where there is none.
 Float4 emission_at(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples);
+
+/// The normal at a point under a normal map, of unit length (or zero).
+Float4 mapped_normal(const Shader& shader, const Interpolator& t, const Lambda& at, int& samples);
 
 /// What a fading light is scaled by at a squared distance.
 inline float faded(const LightSet::Fading& fading, float squared_m) {

@@ -127,6 +127,16 @@ void look_up_shadows(const Shader& shader, const Interpolator& t, ShadeBlock& bl
   }
 }
 
+/// Under a normal map; returns the filtered look-ups.
+int look_up_normals(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+  int samples = 0;
+  for (int i = 0; i < block.count; ++i) {
+    const Float4 normal = mapped_normal(shader, t, lambda_at(t, block.dx[i], block.dy[i]), samples);
+    for (int k = 0; k < 3; ++k) block.normal[k][i] = normal[k];
+  }
+  return samples;
+}
+
 void fade(float opacity, std::span<Float4> colors) {
   for (Float4& color : colors) color *= splat(opacity);
 }
@@ -144,6 +154,7 @@ void shade_batch(const Shader& shader, const Interpolator& t, ShadeBatch& batch)
     block.count = std::min(kBlock, batch.count - first);
     interpolate_block(shader, t, texels, block);
     if (shader.shadowed) look_up_shadows(shader, t, block);
+    if (shader.normal_map != nullptr) batch.texture_samples += look_up_normals(shader, t, block);
     if (shader.per_pixel) light_block(shader, t, block);
     batch.texture_samples += combine_block(shader, t, block, &batch.color[first]);
   }

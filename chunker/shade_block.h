@@ -36,6 +36,7 @@ struct ShadeBlock {
   /// Where shadows are looked up: what the maps say, and s (share_left).
   alignas(64) std::array<BlockRow, layers::kMaxShadowLights> visibility;
   alignas(64) BlockRow shadow;
+  alignas(64) std::array<BlockRow, 3> normal;  ///< under a normal map: of unit length
 };
 
 /// Where the texels of a block come from: there is no texture; its mean; four taps; twice four taps; point by
@@ -45,7 +46,8 @@ enum class Texels { None, Constant, Bilinear, Trilinear, Looked };
 /// λ at every point of the block, and where `texels` says so the taps of its texels.
 void interpolate_block(const Shader& shader, const Interpolator& t, Texels texels, ShadeBlock& block);
 
-/// light() at every point of the block (Phong). Where shadows are looked up, ShadeBlock::visibility is given.
+/// light() at every point of the block (Phong). Where shadows are looked up, ShadeBlock::visibility is given;
+/// under a normal map ShadeBlock::normal.
 void light_block(const Shader& shader, const Interpolator& t, ShadeBlock& block);
 
 }  // namespace talisman::chunker

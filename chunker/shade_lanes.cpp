@@ -322,13 +322,19 @@ HWY_INLINE void store_shadow(const Lit& lit, int first, ShadeBlock& block) {
   hn::Store(hn::IfThenElse(some, hn::Div(luminance_of(lit.diffuse), whole), set(1)), d, &block.shadow[first]);
 }
 
-/// light() at every point.
-template <bool kShadowed, bool kSpecular>
+HWY_INLINE Vec3 load3(const std::array<BlockRow, 3>& rows, int i) {
+  const Floats d;
+  return {hn::Load(d, &rows[0][i]), hn::Load(d, &rows[1][i]), hn::Load(d, &rows[2][i])};
+}
+
+/// light() at every point. `kMapped`: normals were looked up.
+template <bool kShadowed, bool kSpecular, bool kMapped = false>
 HWY_INLINE void light_points(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   const Floats d;
   for (int i = 0; i < block.count; i += static_cast<int>(hn::Lanes(d))) {
     const Vec one = hn::Load(d, &block.one[i]), two = hn::Load(d, &block.two[i]);
-    const Vec3 normal = unit(attribute3(t, shader.layout.normal, one, two));
+    const Vec3 normal =
+        kMapped ? load3(block.normal, i) : unit(attribute3(t, shader.layout.normal, one, two));
     const Vec3 nowhere{set(0), set(0), set(0)};
     const Vec3 position =
         shader.layout.position >= 0 ? attribute3(t, shader.layout.position, one, two) : nowhere;
@@ -370,6 +376,20 @@ void LightShadowedShinyPoints(const Shader& shader, const Interpolator& t, Shade
   light_points<true, true>(shader, t, block);
 }
 
+void LightMappedPoints([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                       [[maybe_unused]] ShadeBlock& block) {
+  if constexpr (layers::is_built(layers::Effect::NormalMap)) {
+    if (shader.shadowed && shader.has_specular)
+      light_points<true, true, true>(shader, t, block);
+    else if (shader.shadowed)
+      light_points<true, false, true>(shader, t, block);
+    else if (shader.has_specular)
+      light_points<false, true, true>(shader, t, block);
+    else
+      light_points<false, false, true>(shader, t, block);
+  }
+}
+
 }  // namespace talisman::chunker::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -384,6 +404,7 @@ HWY_EXPORT(LightPoints);
 HWY_EXPORT(LightShinyPoints);
 HWY_EXPORT(LightShadowedPoints);
 HWY_EXPORT(LightShadowedShinyPoints);
+HWY_EXPORT(LightMappedPoints);
 
 void interpolate_block(const Shader& shader, const Interpolator& t, Texels texels, ShadeBlock& block) {
   const bool fetched = texels == Texels::Trilinear || texels == Texels::Bilinear;
@@ -398,7 +419,9 @@ void interpolate_block(const Shader& shader, const Interpolator& t, Texels texel
 }
 
 void light_block(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
-  if (shader.shadowed && shader.has_specular)
+  if (shader.normal_map != nullptr)
+    HWY_DYNAMIC_DISPATCH(LightMappedPoints)(shader, t, block);
+  else if (shader.shadowed && shader.has_specular)
     HWY_DYNAMIC_DISPATCH(LightShadowedShinyPoints)(shader, t, block);
   else if (shader.shadowed)
     HWY_DYNAMIC_DISPATCH(LightShadowedPoints)(shader, t, block);

@@ -6,14 +6,24 @@
 namespace talisman::chunker {
 namespace {
 
+Float4 decoded_color(const std::uint8_t* byte) {
+  const float alpha = static_cast<float>(byte[3]) / 255.0f;
+  return Float4{linear_from_srgb(byte[0]), linear_from_srgb(byte[1]), linear_from_srgb(byte[2]), 1} *
+         splat(alpha);
+}
+
+Float4 decoded_normal(const std::uint8_t* byte) {
+  const auto component = [](std::uint8_t b) { return static_cast<float>(2 * b - 255) / 255.0f; };
+  return Float4{component(byte[0]), component(byte[1]), component(byte[2]), 1};
+}
+
+template <Float4 (*kDecode)(const std::uint8_t*)>
 MipLevel decode_texels(const layers::Texture& texture) {
   MipLevel level{texture.width, texture.height, {}, texture.wrap_u, texture.wrap_v};
   level.texels.resize(static_cast<std::size_t>(texture.width) * texture.height);
   const std::uint8_t* byte = texture.rgba.data();
   for (Float4& texel : level.texels) {
-    const float alpha = static_cast<float>(byte[3]) / 255.0f;
-    texel = Float4{linear_from_srgb(byte[0]), linear_from_srgb(byte[1]), linear_from_srgb(byte[2]), 1} *
-            splat(alpha);
+    texel = kDecode(byte);
     byte += 4;
   }
   return level;
@@ -110,13 +120,16 @@ Float4 anisotropic(const Pyramid& pyramid, float u, float v, const TextureDeriva
   return mean;
 }
 
-Pyramid build_pyramid(const layers::Texture& texture, bool coarser) {
+namespace {
+
+template <Float4 (*kDecode)(const std::uint8_t*)>
+Pyramid decoded_pyramid(const layers::Texture& texture, bool coarser) {
   Pyramid pyramid;
   if (texture.width <= 0 || texture.height <= 0) return pyramid;
   if (texture.rgba.size() < static_cast<std::size_t>(texture.width) * texture.height * 4) return pyramid;
   pyramid.nearest = texture.nearest;
   pyramid.finest = texture.finest;
-  pyramid.levels.push_back(decode_texels(texture));
+  pyramid.levels.push_back(decode_texels<kDecode>(texture));
   const auto& finest = pyramid.levels[0].texels;
   pyramid.opaque = std::all_of(finest.begin(), finest.end(), [](const Float4& t) { return t[3] == 1; });
   while (coarser && (pyramid.levels.back().width > 1 || pyramid.levels.back().height > 1)) {
@@ -128,6 +141,16 @@ Pyramid build_pyramid(const layers::Texture& texture, bool coarser) {
     pyramid.heights.push_back(level.height);
   }
   return pyramid;
+}
+
+}  // namespace
+
+Pyramid build_pyramid(const layers::Texture& texture, bool coarser) {
+  return decoded_pyramid<decoded_color>(texture, coarser);
+}
+
+Pyramid build_normal_pyramid(const layers::Texture& texture, bool coarser) {
+  return decoded_pyramid<decoded_normal>(texture, coarser);
 }
 
 }  // namespace talisman::chunker

@@ -49,8 +49,16 @@ struct Pyramid {
 /// pyramid. `coarser`: with all levels; else the finest alone, and no mean.
 Pyramid build_pyramid(const layers::Texture& texture, bool coarser = true);
 
+/// The same of a normal texture, whose bytes are no light: n = 2 · byte / 255 - 1, and its means, which are
+/// shorter the more the normals under them differ. Alpha is 1.
+Pyramid build_normal_pyramid(const layers::Texture& texture, bool coarser);
+
 /// Largest |u|, |v| that is kept as it is; beyond it float coordinates have lost their fraction anyway.
 inline constexpr float kLargestTextureCoordinate = 1e6f;
+inline float usable_coordinate(float v) {
+  if (!(v == v)) return 0;
+  return std::clamp(v, -kLargestTextureCoordinate, kLargestTextureCoordinate);
+}
 
 /// ⌊x⌋ for |x| < 2³¹ without a library call.
 inline int floor_to_int(float x) {

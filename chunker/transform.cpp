@@ -76,11 +76,6 @@ std::int32_t snap(double texels) {
   return i - (v < i ? 1 : 0);
 }
 
-float usable_coordinate(float v) {
-  if (!(v == v)) return 0;
-  return std::clamp(v, -kLargestTextureCoordinate, kLargestTextureCoordinate);
-}
-
 }  // namespace
 
 Rows34 operator*(const Rows34& outer, const dmat4& inner) {

@@ -28,6 +28,12 @@
 /// that is not flat the outlines lie on its polyhedron, and material points stand for what is between them: an
 /// estimate there.
 ///
+/// Normals are those of the polyhedron and the meshes. Under a normal map the pixels of a surface are lit by others,
+/// which lean to all sides about them: for such a layer both forms are an *estimate*. A light that moves changes
+/// single bumps by more than F says, up to the whole of its colour where they lean by the angle that it lacks, and
+/// in other directions, so that no multiplier mends it; in the mean over the bumps F is about right, as long as
+/// they lean little. θ does not depend on normals: `light_angle_rad` bounds how far the light of a bump may turn.
+///
 /// Points whose normal faces away from the eye in both states are not seen and do not count, unless that is
 /// so for all of them (the eye is inside the polyhedron). The light source form knows nothing of a light that
 /// changes its colour; the point-sampled form does.

@@ -39,20 +39,23 @@ enum class Effect {
   EmissiveMap,      ///< some lit material's emission has a texture
   Morphing,         ///< some drawn part has morph targets
   LightFalloff,     ///< some light fades with distance
+  NormalMap,        ///< some lit part has a normal texture and tangents
 };
 inline constexpr std::array kAllEffects = {
     Effect::Texture,           Effect::MipFilter,      Effect::Lighting,        Effect::SpecularHighlight,
     Effect::Translucency,      Effect::Skinning,       Effect::LayerResolution, Effect::MotionBlur,
     Effect::SpriteCompression, Effect::VisibilitySort, Effect::ColorWarp,       Effect::ShadowMap,
     Effect::ShadowLayer,       Effect::SpecularLayer,  Effect::ReflectionMap,   Effect::ReflectionLayer,
-    Effect::TextureLayers,     Effect::EmissiveMap,    Effect::Morphing,        Effect::LightFalloff};
+    Effect::TextureLayers,     Effect::EmissiveMap,    Effect::Morphing,        Effect::LightFalloff,
+    Effect::NormalMap};
 
 /// In the order of kAllEffects.
 inline constexpr std::array<std::string_view, kAllEffects.size()> kEffectNames = {
     "texture",          "mip_filter",       "lighting",     "specular_highlight", "translucency",
     "skinning",         "layer_resolution", "motion_blur",  "sprite_compression", "visibility_sort",
     "color_warp",       "shadow_map",       "shadow_layer", "specular_layer",     "reflection_map",
-    "reflection_layer", "texture_layers",   "emissive_map", "morphing",           "light_falloff"};
+    "reflection_layer", "texture_layers",   "emissive_map", "morphing",           "light_falloff",
+    "normal_map"};
 
 /// "texture", "mip_filter", …
 constexpr std::string_view name(Effect effect) { return kEffectNames[static_cast<std::size_t>(effect)]; }

@@ -19,6 +19,27 @@ bool has_emissive_map(const Material& material) {
   return !material.unlit && material.emissive_texture >= 0 && !is_zero(material.emissive);
 }
 
+/// Ambient light comes from everywhere: normals are not asked.
+bool shows_normal_map(const Scene& scene, const Part& part) {
+  const bool has_direction = std::any_of(scene.lights.begin(), scene.lights.end(), [](const Light& light) {
+    return light.kind != Light::Kind::Ambient;
+  });
+  return has_direction && has_normal_map(scene.materials[part.material], scene.meshes[part.mesh]);
+}
+
+/// The first texture that is looked up for the part; -1: none is.
+int any_texture(const Scene& scene, const Part& part) {
+  if (part.material < 0) return -1;
+  const Material& material = scene.materials[part.material];
+  if (material.texture >= 0) return material.texture;
+  if (has_emissive_map(material)) return material.emissive_texture;
+  return shows_normal_map(scene, part) ? material.normal_texture : -1;
+}
+
+std::string quoted_texture(const Scene& scene, int texture) {
+  return "texture '" + scene.textures[texture].name + "'";
+}
+
 /// Who fades with distance, or nobody.
 std::string fading_light(const Scene& scene) {
   for (const Light& light : scene.lights) {
@@ -37,9 +58,8 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
   switch (effect) {
     case Effect::Texture:
     case Effect::MipFilter:
-      if (texture) return material_name + " has texture '" + texture->name + "'";
-      if (material && has_emissive_map(*material))
-        return material_name + " has texture '" + scene.textures[material->emissive_texture].name + "'";
+      if (const int any = any_texture(scene, part); any >= 0)
+        return material_name + " has " + quoted_texture(scene, any);
       break;
     case Effect::Lighting:
       if (material && !material->unlit && has_lights(scene)) return material_name + " is lit";
@@ -62,11 +82,14 @@ std::string call_of(const Scene& scene, const Part& part, Effect effect) {
       break;
     case Effect::EmissiveMap:
       if (material && has_emissive_map(*material))
-        return material_name + " has emissive texture '" + scene.textures[material->emissive_texture].name +
-               "'";
+        return material_name + " has emissive " + quoted_texture(scene, material->emissive_texture);
       break;
     case Effect::LightFalloff:
       if (!material || !material->unlit) return fading_light(scene);
+      break;
+    case Effect::NormalMap:
+      if (material && shows_normal_map(scene, part))
+        return material_name + " has normal " + quoted_texture(scene, material->normal_texture);
       break;
     default:
       break;  // asked for by layers, not by parts
@@ -132,8 +155,14 @@ struct Context {
   std::vector<int> carriers;  ///< moving_carriers(scene)
 };
 
+/// What depends on the run's own wish as well.
+bool run_allows(const RunEffects& run, Effect effect) {
+  return effect == Effect::MipFilter ? run.mip_filter : effect == Effect::NormalMap ? run.per_pixel : true;
+}
+
 std::string call_of(const Context& context, const Layer& layer, Effect effect) {
   const Scene& scene = context.scene;
+  if (!run_allows(context.run, effect)) return {};
   switch (effect) {
     case Effect::LayerResolution:
       return layer.preferences.resolution_scale != 1 ? quoted("layer", layer.name) + " has its own resolution"
@@ -150,9 +179,6 @@ std::string call_of(const Context& context, const Layer& layer, Effect effect) {
       return (layer.base < 0 || layer.kind == LayerKind::Light) && context.run.follows_light
                  ? light_change_of(scene, layer, context.carriers).why
                  : "";
-    case Effect::MipFilter:
-      if (!context.run.mip_filter) return {};
-      break;
     case Effect::ShadowMap:
       return layer.holds.shadows ? "shadows fall on " + quoted("layer", layer.name) : "";
     case Effect::ShadowLayer:
@@ -249,6 +275,9 @@ std::string why_not(const Scene& scene, std::span<const Layer> layers, const Run
       return "no part has morph targets";
     case Effect::LightFalloff:
       return "no light fades with distance";
+    case Effect::NormalMap:
+      return run.per_pixel ? "no lit part has a normal texture and tangents"
+                           : "the run does not shade per pixel";
     case Effect::LayerResolution:
       return "every layer has the display's resolution";
     case Effect::MotionBlur:

@@ -10,7 +10,8 @@
 ///
 /// The formula of chunker/shade.h, for one surface that stands for the whole layer: the mean of the materials
 /// of its parts. It is limited to 1 as the texels of a sprite are, so that what is white and gets more light
-/// does not count as changed. A light that is not finite gives nothing.
+/// does not count as changed. A light that is not finite gives nothing. Normal maps are left out: with one the colour
+/// of a point is an estimate of the mean about it.
 
 #include <span>
 #include <vector>

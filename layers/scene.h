@@ -32,15 +32,20 @@ namespace talisman::layers {
 struct MorphTarget {
   std::vector<vec3> positions;  ///< metres, added
   std::vector<vec3> normals;    ///< added; the sum is of unit length again
+  std::vector<vec3> tangents;   ///< added to their first three components
 };
 
 /// Indexed triangles. Every vertex array but `positions` is either empty or as long as `positions`.
 struct Mesh {
   std::string name;
-  std::vector<vec3> positions;         ///< metres, in the space of the part's node
-  std::vector<vec3> normals;           ///< unit length
-  std::vector<vec2> uvs;               ///< texture coordinates, 1 = one repeat
-  std::vector<vec2> emissive_uvs;      ///< of the emissive texture, where they are not `uvs`
+  std::vector<vec3> positions;     ///< metres, in the space of the part's node
+  std::vector<vec3> normals;       ///< unit length
+  std::vector<vec2> uvs;           ///< texture coordinates, 1 = one repeat
+  std::vector<vec2> emissive_uvs;  ///< of the emissive texture, where they are not `uvs`
+  std::vector<vec2> normal_uvs;    ///< of the normal texture, where they are not `uvs`
+  /// Where u grows, of unit length, and a sign: the bitangent is sign · (normal × tangent), which is where v
+  /// shrinks. (0, 0, 0, 0): there is none, and no normal map there (layers/tangents.h). Only with `normals`.
+  std::vector<vec4> tangents;
   std::vector<vec3> colors;            ///< linear, multiplied with the base colour
   std::vector<float> alphas;           ///< 0 … 1, multiplied with the opacity; only with `colors`
   std::vector<std::uint32_t> indices;  ///< three per triangle
@@ -53,7 +58,7 @@ struct Mesh {
 /// Where a texture is looked up outside 0 … 1.
 enum class Wrap { Repeat, Clamp, Mirror };
 
-/// sRGB bytes, straight alpha, 4 per texel.
+/// sRGB bytes, straight alpha, 4 per texel. Of a normal texture the bytes are no light: n = 2 · byte / 255 - 1.
 struct Texture {
   std::string name;
   int width = 0, height = 0;
@@ -76,6 +81,11 @@ struct Material {
   float shininess = 0;  ///< Blinn-Phong exponent, ≥ 0
   vec3 emissive{0, 0, 0};
   int emissive_texture = -1;  ///< index into Scene::textures, multiplied with `emissive`; -1: none
+  /// Index into Scene::textures: normals in the frame of tangent, bitangent and normal; -1: none. Seen only
+  /// where the mesh has tangents and is shaded per pixel.
+  int normal_texture = -1;
+  float normal_scale =
+      1;  ///< of their first two components; 0: the map changes nothing; < 0: hollows for bumps
   /// 0 … 1; above 0: where the alpha of texture and vertices is at least this the surface is opaque,
   /// elsewhere it is not there.
   float alpha_cutoff = 0;
@@ -276,6 +286,8 @@ bool deforms(const Scene& scene, const Part& part);
 /// Cost: O(vertices · targets).
 std::vector<dvec3> morphed_positions(const SceneFrame& frame, const Part& part);
 std::vector<dvec3> morphed_normals(const SceneFrame& frame, const Part& part);
+/// Likewise, without the signs. The mesh has tangents.
+std::vector<dvec3> morphed_tangents(const SceneFrame& frame, const Part& part);
 
 /// World positions of a part's vertices at `frame`: morph targets, then node transform, or linear-blend
 /// skinning where the part has a skin: p' = Σ wₖ Mₖ p / Σ wₖ; a vertex whose weights are all 0 follows the first joint it names.

@@ -132,8 +132,29 @@ std::string morph_defect(const Mesh& mesh) {
     std::string defect = first_of(
         {optional_length("morph positions", morph.positions.size(), n),
          optional_length("morph normals", morph.normals.size(), mesh.normals.size()),
-         finite_array("morph position", morph.positions), finite_array("morph normal", morph.normals)});
+         optional_length("morph tangents", morph.tangents.size(), mesh.tangents.size()),
+         finite_array("morph position", morph.positions), finite_array("morph normal", morph.normals),
+         finite_array("morph tangent", morph.tangents)});
     if (!defect.empty()) return defect;
+  }
+  return {};
+}
+
+/// Frames of normal maps: a sign where there is a tangent, and neither where there is none.
+std::string normal_map_defect(const Mesh& mesh) {
+  const std::size_t n = mesh.positions.size();
+  if (auto defect =
+          first_of({optional_length("normal uvs", mesh.normal_uvs.size(), n),
+                    optional_length("tangents", mesh.tangents.size(), n),
+                    finite_array("normal uv", mesh.normal_uvs), finite_array("tangent", mesh.tangents)});
+      !defect.empty())
+    return defect;
+  if (!mesh.tangents.empty() && mesh.normals.empty())
+    return broken("only with normals", mesh.tangents.size(), " tangents");
+  for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
+    const vec4& t = mesh.tangents[i];
+    if (vec3(t) == vec3(0) ? t.w != 0 : t.w != 1 && t.w != -1)
+      return broken("1 or -1, of a tangent that is zero 0", "sign of tangent ", i, " is ", t.w);
   }
   return {};
 }
@@ -146,9 +167,10 @@ std::string defect_of(const Scene&, const Mesh& mesh) {
        optional_length("weights", mesh.weights.size(), n),
        optional_length("emissive uvs", mesh.emissive_uvs.size(), n),
        optional_length("alphas", mesh.alphas.size(), n), finite_array("emissive uv", mesh.emissive_uvs),
-       alpha_defect(mesh), morph_defect(mesh), places_defect("position", mesh.positions),
-       finite_array("normal", mesh.normals), finite_array("uv", mesh.uvs), finite_array("color", mesh.colors),
-       finite_array("weight", mesh.weights), index_array_defect(mesh), weight_defect(mesh)});
+       alpha_defect(mesh), morph_defect(mesh), normal_map_defect(mesh),
+       places_defect("position", mesh.positions), finite_array("normal", mesh.normals),
+       finite_array("uv", mesh.uvs), finite_array("color", mesh.colors), finite_array("weight", mesh.weights),
+       index_array_defect(mesh), weight_defect(mesh)});
 }
 
 // --- Surfaces ---
@@ -173,6 +195,8 @@ std::string defect_of(const Scene& scene, const Material& material) {
        finite("shininess", material.shininess), range_defect("shininess", material.shininess, 0, HUGE_VAL),
        index_in("texture", material.texture, scene.textures.size(), true),
        index_in("emissive texture", material.emissive_texture, scene.textures.size(), true),
+       index_in("normal texture", material.normal_texture, scene.textures.size(), true),
+       finite("normal scale", material.normal_scale),
        range_defect("alpha cutoff", material.alpha_cutoff, 0, 1),
        index_in("second texture", material.texture2, scene.textures.size(), true),
        range_defect("texture blend 1", material.texture_blend.x, 0, 1),

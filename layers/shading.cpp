@@ -338,6 +338,11 @@ bool casts_shadow(const Scene& scene, const Part& part) {
          (material->opacity >= 1 && (material->texture < 0 || !scene.textures[material->texture].has_alpha));
 }
 
+bool has_normal_map(const Material& material, const Mesh& mesh) {
+  return !material.unlit && material.normal_texture >= 0 && material.normal_scale != 0 &&
+         !mesh.tangents.empty();
+}
+
 bool is_highlighted(const Scene& scene, const Part& part) {
   const Material* material = material_of(scene, part);
   return material && is_lit(scene, part) && has_bright_light(scene) && !is_zero(material->specular);

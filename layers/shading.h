@@ -60,6 +60,9 @@ bool is_highlighted(const Scene& scene, const Part& part);
 bool is_reflecting(const Scene& scene, const Part& part);
 bool has_second_texture(const Scene& scene, const Part& part);
 
+/// Is the surface lit by the normals of a texture, where it is shaded per pixel?
+bool has_normal_map(const Material& material, const Mesh& mesh);
+
 /// Some part of the layer is so.
 bool any_part(const Scene& scene, const Layer& layer, bool (*property)(const Scene&, const Part&));
 

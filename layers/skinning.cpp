@@ -70,6 +70,14 @@ std::vector<dvec3> morphed_normals(const SceneFrame& frame, const Part& part) {
   return sum_of(mesh.normals, mesh, morph_weights(frame, part), &MorphTarget::normals);
 }
 
+std::vector<dvec3> morphed_tangents(const SceneFrame& frame, const Part& part) {
+  const Mesh& mesh = frame.scene->meshes.at(part.mesh);
+  std::vector<vec3> own;
+  own.reserve(mesh.tangents.size());
+  for (const vec4& tangent : mesh.tangents) own.emplace_back(tangent);
+  return sum_of(own, mesh, morph_weights(frame, part), &MorphTarget::tangents);
+}
+
 std::vector<dmat4> joint_palette(const SceneFrame& frame, const Part& part) {
   if (part.skin < 0) return {};
   const Skin& skin = frame.scene->skins.at(part.skin);

@@ -7,6 +7,7 @@
 #include "regulator/policies.h"
 #include "regulator/profile.h"
 #include "regulator/resolution.h"
+#include "regulator/settle.h"
 
 namespace talisman::regulator {
 
@@ -93,7 +94,7 @@ void sort_by_benefit_per_cost(std::vector<Candidate>& candidates, const Budget& 
 
 bool is_candidate(const LayerAssessment& layer, const RegulatorOptions& options, double unmended_px) {
   if (!layer.in_view || !layer.has_sprite) return false;
-  if (!(benefit_px(layer, unmended_px) > options.budget.cutoff_px)) return false;
+  if (!(benefit_px(layer, unmended_px) > options.budget.cutoff_px) && !settles(layer, options)) return false;
   return !(has_sound_fit(layer) && barred_by_maximum_rate(layer));
 }
 

@@ -12,6 +12,7 @@
 #include "regulator/decision.h"
 #include "regulator/policies.h"
 #include "regulator/resolution.h"
+#include "regulator/settle.h"
 
 namespace talisman::regulator {
 
@@ -78,8 +79,9 @@ LayerDecision decide_without_budget(const LayerAssessment& layer, const Regulato
   const double benefit = benefit_px(layer);
   const double cutoff = options.budget.cutoff_px;
   if (is_candidate(layer, options)) {
-    LayerDecision old =
-        keep(layer, comparison("deferred: old shadow map; benefit", benefit, ">", cutoff, "px"));
+    LayerDecision old = keep(
+        layer, benefit > cutoff ? comparison("deferred: old shadow map; benefit", benefit, ">", cutoff, "px")
+                                : "deferred: old shadow map; " + settle_reason(layer));
     old.deferred = true;
     return old;
   }
@@ -196,12 +198,15 @@ void decide_candidates(std::span<const LayerAssessment> assessments, const Regul
   Budget left = taken.alternative.left;
   for (const Candidate& candidate : order) {
     const LayerAssessment& layer = layer_with(candidate.layer, assessments);
+    const bool settled = settles(layer, options);
     const std::string detail =
-        comparison("benefit", candidate.benefit_px, ">", options.budget.cutoff_px, "px") +
+        (settled ? settle_reason(layer)
+                 : comparison("benefit", candidate.benefit_px, ">", options.budget.cutoff_px, "px")) +
         at_resolution(layer.resolution);
     LayerDecision& decision = decisions[&layer - assessments.data()];
     if (is_chosen(taken.choice, candidate.layer)) {
       decision = rerender(layer, detail);
+      decision.settled = settled;
       left = after(left, candidate.cost);
       continue;
     }

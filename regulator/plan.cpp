@@ -180,6 +180,8 @@ std::string first_defect(const BudgetOptions& b) {
 
 std::string first_defect(const RegulatorOptions& options) {
   if (options.hold_frames < 1) return broken("hold_frames", options.hold_frames, "at least 1");
+  if (options.settle_frames < 0)
+    return broken("settle_frames", options.settle_frames, "0 (off) or at least 1");
   if (std::string defect = first_defect(options.thresholds); !defect.empty()) return defect;
   if (options.lookahead.frames < 0) return broken("lookahead_frames", options.lookahead.frames, "at least 0");
   return first_defect(options.budget);

@@ -65,6 +65,8 @@ struct LayerAssessment {
   double resolution = 1;  ///< at which it would be rendered now, relative to what its author asks for; (0, 1]
   double resolution_then = 1;    ///< at which its sprite was rendered, likewise
   int frames_short_of_area = 0;  ///< frames in a row in which it was deferred for want of pixels or chunks
+  int frames_at_rest = 0;  ///< frames in a row, this one the last, in which its state was that of the frame
+                           ///< before; counted only with settle_frames
 };
 
 /// The budget of a frame that is not limited.
@@ -144,6 +146,10 @@ struct RegulatorOptions {
   int hold_frames = 3;     ///< Hold, Interpolate: N ≥ 1; 1 is every frame
   bool color_warp = true;  ///< reused sprites are multiplied with the colour that fits their shading best;
                            ///< false: hardware without it, the photometric error is that of 1
+  int settle_frames =
+      0;  ///< N ≥ 1: what is shown enlarged is drawn again when it has been at rest for N frames
+          ///< (regulator/settle.h), by policies that draw on demand; fewer are sharp sooner and
+          ///< draw more; 0: off
   Thresholds thresholds;
   LookaheadOptions lookahead;
   BudgetOptions budget;
@@ -169,6 +175,7 @@ struct LayerDecision {
   bool short_of_area = false;          ///< deferred for want of pixels or chunks
   bool deferred = false;               ///< worth drawing, but the frame's budget did not suffice
   bool over_budget = false;            ///< of these: dearer than the whole budget of a frame
+  bool settled = false;                ///< drawn because it is at rest (regulator/settle.h): as of this frame
 };
 
 struct MapAssessment;

@@ -2,6 +2,7 @@
 #include "regulator/decision.h"
 #include "regulator/policies.h"
 #include "regulator/resolution.h"
+#include "regulator/settle.h"
 
 namespace talisman::regulator {
 
@@ -80,12 +81,16 @@ std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& o
 LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options) {
   if (nothing_to_gain(layer)) return reuse(layer, "unchanged");
   std::string violation = violation_of(layer, options);
+  const bool settled = violation.empty() && settles(layer, options);
+  if (settled) violation = settle_reason(layer);
   if (violation.empty())
     return reuse(layer, comparison("geometric", layer.fiducials.geometric.px,
                                    "<=", options.thresholds.geometric_px, "px"));
   if (has_sound_fit(layer) && barred_by_maximum_rate(layer))
     return reuse(layer, "deferred: max_update_rate; " + violation);
-  return rerender(layer, std::move(violation));
+  LayerDecision decision = rerender(layer, std::move(violation));
+  decision.settled = settled;
+  return decision;
 }
 
 }  // namespace talisman::regulator

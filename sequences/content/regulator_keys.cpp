@@ -109,6 +109,8 @@ const Table<RegulatorOptions>& regulator_keys() {
           .key("policy", &R::policy, policy(), "", "what decides")
           .key("hold_frames", &R::hold_frames, whole(1, kLongestRun_frames), "frames",
                "policies hold and interpolate: drawn every so many")
+          .key("settle_frames", &R::settle_frames, whole(0, kLongestRun_frames), "frames",
+               "a layer that is shown enlarged is drawn again when it has been at rest for so many; 0: never")
           .include(&R::thresholds, threshold_keys())
           .key("color_warp", &R::color_warp, truth(), "",
                "reused sprites are multiplied with the colour (0 … 1 per channel) that "

@@ -60,6 +60,7 @@ SharedContent add_content(layers::Scene& scene, const layers::Scene& model, bool
     material.texture = shifted(material.texture, scene.textures.size());
     material.texture2 = shifted(material.texture2, scene.textures.size());
     material.emissive_texture = shifted(material.emissive_texture, scene.textures.size());
+    material.normal_texture = shifted(material.normal_texture, scene.textures.size());
     material.two_sided |= two_sided;
     scene.materials.push_back(std::move(material));
   }

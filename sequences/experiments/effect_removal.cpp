@@ -64,8 +64,13 @@ void remove_emissive_maps(Scene& scene) {
   }
 }
 
+void remove_normal_maps(Scene& scene) {
+  for (Material& material : scene.materials) material.normal_texture = -1;
+}
+
 void remove_textures(Scene& scene) {
   remove_emissive_maps(scene);
+  remove_normal_maps(scene);
   for (Material& material : scene.materials) flatten_textures(scene, material);
   scene.textures.clear();
 }
@@ -123,6 +128,22 @@ dvec3 posed_normal(const layers::Mesh& mesh, std::size_t vertex, const std::vect
   return length > 0 ? normal / length : dvec3(mesh.normals[vertex]);
 }
 
+/// Unit length, the sign as it is; nothing where the direction is lost.
+vec4 turned_tangent(const dvec3& tangent, float sign) {
+  const double length = glm::length(tangent);
+  return length > 0 ? vec4(vec3(tangent / length), sign) : vec4(0);
+}
+
+void pose_tangents(const dmat4& node_from_world, const std::vector<dmat4>& joints, layers::Mesh& mesh) {
+  for (std::size_t i = 0; i < mesh.tangents.size(); ++i) {
+    dvec3 sum(0.0);
+    for (int k = 0; k < 4; ++k)
+      sum += static_cast<double>(mesh.weights[i][k]) *
+             (dmat3(node_from_world * joints[mesh.joints[i][k]]) * dvec3(mesh.tangents[i]));
+    mesh.tangents[i] = turned_tangent(sum, mesh.tangents[i].w);
+  }
+}
+
 /// The mesh of a skinned part as it is at `frame`, in the space of `node`.
 layers::Mesh posed_mesh(const layers::SceneFrame& frame, const layers::Part& part, int node) {
   layers::Mesh mesh = frame.scene->meshes[part.mesh];
@@ -135,6 +156,7 @@ layers::Mesh posed_mesh(const layers::SceneFrame& frame, const layers::Part& par
     turned_by.push_back(glm::transpose(glm::inverse(dmat3(node_from_world * joint))));
   for (std::size_t i = 0; i < mesh.normals.size(); ++i)
     mesh.normals[i] = vec3(posed_normal(mesh, i, turned_by));
+  pose_tangents(node_from_world, layers::joint_palette(frame, part), mesh);
   mesh.joints.clear();
   mesh.weights.clear();
   return mesh;
@@ -168,6 +190,9 @@ void remove_morphs(Scene& scene) {
     for (std::size_t i = 0; i < normals.size(); ++i)
       if (const double length = glm::length(normals[i]); length > 0)
         mesh.normals[i] = vec3(normals[i] / length);
+    const std::vector<dvec3> tangents = layers::morphed_tangents(first, part);
+    for (std::size_t i = 0; i < tangents.size(); ++i)
+      mesh.tangents[i] = turned_tangent(tangents[i], mesh.tangents[i].w);
     mesh.morphs.clear();
     part.mesh = static_cast<int>(still.meshes.size());
     still.meshes.push_back(std::move(mesh));
@@ -322,6 +347,8 @@ void (*scene_change(Effect effect))(layers::Scene&) {
       return remove_morphs;
     case Effect::LightFalloff:
       return remove_falloff;
+    case Effect::NormalMap:
+      return remove_normal_maps;
     default:
       return nullptr;
   }

@@ -206,6 +206,7 @@ class Reading {
     else
       read_metal(object_of(from_, "pbrMetallicRoughness"));
     read_emission();
+    read_normal_map();
     name_what_is_left_out();
   }
 
@@ -305,9 +306,19 @@ class Reading {
     if (!maps_.has_emissive_map) to_.emissive = layers::vec3(0);  // the factor alone would glow all over
   }
 
+  /// Normals are asked for by lights alone.
+  void read_normal_map() {
+    const Json& info = object_of(from_, "normalTexture");
+    const double scale = number_of(info, "scale", 1);
+    if (info.empty() || to_.unlit || scale == 0) return;
+    to_.normal_texture = textures_.of(info, true);
+    to_.normal_scale = static_cast<float>(scale);
+    maps_.normal = coordinates_of(info);
+    maps_.has_normal_map = to_.normal_texture >= 0;
+  }
+
   void name_what_is_left_out() {
     if (to_.unlit) return;
-    if (from_.contains("normalTexture")) import_.lacks("normal maps are not drawn", to_.name);
     if (const Json* specular = extension_of(from_, "KHR_materials_specular"))
       if (specular->contains("specularTexture") || specular->contains("specularColorTexture"))
         import_.lacks("specular maps are not drawn", to_.name);

@@ -62,6 +62,8 @@ void read_coordinates(GltfImport& import, const Json& attributes, const GltfMate
                       layers::Mesh& mesh) {
   const std::size_t n = mesh.positions.size();
   if (maps.has_base_map) mesh.uvs = coordinates(import, attributes, maps.base, n);
+  if (maps.has_normal_map && !(maps.has_base_map && maps.normal == maps.base))
+    mesh.normal_uvs = coordinates(import, attributes, maps.normal, n);
   if (!maps.has_emissive_map) return;
   if (!maps.has_base_map)
     mesh.uvs = coordinates(import, attributes, maps.emissive, n);
@@ -155,6 +157,21 @@ void read_morphs(GltfImport& import, const Json& primitive, layers::Mesh& mesh) 
   }
 }
 
+/// Tangents without normals are to be ignored (glTF 2.0, 3.7.2.1); those of coordinates that a transform turns are other
+/// ones.
+void read_tangents(GltfImport& import, const Json& primitive, const GltfMaterial& maps, layers::Mesh& mesh) {
+  const int accessor = index_of(object_of(primitive, "attributes"), "TANGENT");
+  if (!maps.has_normal_map || accessor < 0 || mesh.normals.empty() || maps.normal.turned()) return;
+  const Accessed from = read_accessor(import.file, accessor, "TANGENT", 4);
+  check_count("TANGENT", from, mesh.positions.size());
+  for (std::size_t i = 0; i < from.count; ++i)
+    mesh.tangents.emplace_back(vector_at(from, i), static_cast<float>(from.at(i, 3)));
+  const Json& targets = list_of(primitive, "targets");
+  for (std::size_t k = 0; k < mesh.morphs.size(); ++k)
+    if (const int at = index_of(targets[k], "TANGENT"); at >= 0)
+      mesh.morphs[k].tangents = vectors_of(import, at, "TANGENT of a morph target", mesh.positions.size());
+}
+
 /// Weights that nothing moves are added once and for all.
 void bake_morphs(const std::vector<double>& weights, layers::Mesh& mesh) {
   for (std::size_t k = 0; k < mesh.morphs.size() && k < weights.size(); ++k) {
@@ -162,8 +179,15 @@ void bake_morphs(const std::vector<double>& weights, layers::Mesh& mesh) {
     const layers::MorphTarget& morph = mesh.morphs[k];
     for (std::size_t i = 0; i < morph.positions.size(); ++i) mesh.positions[i] += weight * morph.positions[i];
     for (std::size_t i = 0; i < morph.normals.size(); ++i) mesh.normals[i] += weight * morph.normals[i];
+    for (std::size_t i = 0; i < morph.tangents.size(); ++i)
+      mesh.tangents[i] += layers::vec4(weight * morph.tangents[i], 0);
   }
   mesh.morphs.clear();
+}
+
+/// -1: those of the default material, which is the last.
+const GltfMaterial& maps_of(const GltfImport& import, int material) {
+  return material >= 0 ? import.materials[static_cast<std::size_t>(material)] : import.materials.back();
 }
 
 layers::Mesh read_primitive(GltfImport& import, const Json& primitive, int material) {
@@ -176,7 +200,7 @@ layers::Mesh read_primitive(GltfImport& import, const Json& primitive, int mater
   if (const int normals = index_of(attributes, "NORMAL"); normals >= 0 && n > 0)
     mesh.normals = vectors_of(import, normals, "NORMAL", n);
   const std::size_t last = import.materials.size() - 1;
-  const GltfMaterial& maps = import.materials[material >= 0 ? static_cast<std::size_t>(material) : last];
+  const GltfMaterial& maps = maps_of(import, material);
   const layers::Material& look =
       import.model.scene.materials[material >= 0 ? static_cast<std::size_t>(material) : last];
   const bool opaque = look.opacity == 1 && look.alpha_cutoff == 0 &&
@@ -186,6 +210,7 @@ layers::Mesh read_primitive(GltfImport& import, const Json& primitive, int mater
   read_colors(import, attributes, opaque, mesh);
   read_influences(import, attributes, mesh);
   read_morphs(import, primitive, mesh);
+  read_tangents(import, primitive, maps, mesh);
   return mesh;
 }
 
@@ -239,6 +264,9 @@ int add_primitive(GltfImport& import, const Json& primitive, const std::string& 
   mesh.name = name;
   if (!import.morph_animated.contains(node)) bake_morphs(weights, mesh);
   for (layers::vec3& normal : mesh.normals) normal = unit_or_up(normal);
+  if (const std::string lacking = finish_gltf_tangents(maps_of(import, material_of(import, primitive)), mesh);
+      !lacking.empty())
+    import.lacks(lacking, mesh.name);
   import.model.scene.meshes.push_back(std::move(mesh));
   return static_cast<int>(import.model.scene.meshes.size()) - 1;
 }

@@ -5,6 +5,7 @@
 ///
 ///   gltf_nodes      the tree of the default scene, cameras, layer tags, parts
 ///   gltf_meshes     primitives → Mesh: triangles, strips, fans; skins; morph targets
+///   gltf_tangents   frames of normal maps: those of the file, or made from the coordinates
 ///   gltf_materials  materials, textures, samplers
 ///   gltf_motion     the first animation
 ///   gltf_lights     KHR_lights_punctual, and the exposure that brings lux and candela to 0 … 1
@@ -34,11 +35,13 @@ struct GltfCoordinates {
   int set = 0;
   double offset[2] = {0, 0}, scale[2] = {1, 1}, rotation_rad = 0;
   bool operator==(const GltfCoordinates&) const = default;
+  /// Do u and v grow in other directions than those of the set?
+  bool turned() const { return rotation_rad != 0 || !(scale[0] > 0 && scale[1] > 0); }
 };
 
 struct GltfMaterial {
-  GltfCoordinates base, emissive;
-  bool has_base_map = false, has_emissive_map = false;
+  GltfCoordinates base, emissive, normal;
+  bool has_base_map = false, has_emissive_map = false, has_normal_map = false;
 };
 
 struct GltfImport {
@@ -66,7 +69,7 @@ struct GltfImport {
   }
 
   void warn(const std::string& text) { model.warnings.push_back(text); }
-  /// "normal maps are not drawn: 'hull', 'wing'". Without a name: the sentence alone.
+  /// "points are not drawn: 'hull', 'wing'". Without a name: the sentence alone.
   void lacks(const std::string& what, const std::string& whose = {});
 };
 
@@ -81,6 +84,10 @@ void find_animated_morphs(GltfImport& import);
 void import_gltf_nodes(GltfImport& import);
 void import_gltf_motion(GltfImport& import);
 void import_gltf_lights(GltfImport& import);
+
+/// When positions, normals and the file's own tangents are final: gives a mesh with a normal map tangents, made from its
+/// coordinates where the file has none. Returns what cannot be drawn, for `lacks`; empty: all can.
+std::string finish_gltf_tangents(const GltfMaterial& maps, layers::Mesh& mesh);
 
 /// The meshes of a node as parts; called for each node, in the order of the tree.
 void import_gltf_parts(GltfImport& import, int node);

@@ -13,7 +13,8 @@
 ///   places     metres, y up: FBX axes and units are applied; an OBJ far from its origin is read around a
 ///              local one (obj_scene.h)
 ///   PBR        pbr_surface.h; metalness and occlusion maps in the colour texture (gltf_baked_maps.h), roughness
-///              maps as their mean; emissive maps; normal maps are not drawn, which is said
+///              maps as their mean; emissive maps; normal maps of glTF, with the file's tangents or those of
+///              the texture coordinates (layers/tangents.h); of other formats they are not drawn, which is said
 ///   compressed meshopt and draco (gltf_compression.h)
 ///   textures   embedded, or found by the rules of texture_search.h; one that is not found is a warning and a
 ///              plain colour

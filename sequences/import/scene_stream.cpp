@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kSceneMagic =
     0x4d534c54;  // "TLSM"; both ends run on one machine, so bytes are in its order
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 
 [[noreturn]] void fail(const std::string& what) { throw InputError("scene stream: " + what); }
 
@@ -128,6 +128,7 @@ template <typename Stream, Of<layers::MorphTarget> T>
 void fields(Stream& s, T& m) {
   s.array(m.positions);
   s.array(m.normals);
+  s.array(m.tangents);
 }
 
 template <typename Stream, Of<layers::Mesh> T>
@@ -137,6 +138,8 @@ void fields(Stream& s, T& m) {
   s.array(m.normals);
   s.array(m.uvs);
   s.array(m.emissive_uvs);
+  s.array(m.normal_uvs);
+  s.array(m.tangents);
   s.array(m.colors);
   s.array(m.alphas);
   s.array(m.indices);
@@ -170,6 +173,8 @@ void fields(Stream& s, T& m) {
   s.value(m.shininess);
   s.value(m.emissive);
   s.value(m.emissive_texture);
+  s.value(m.normal_texture);
+  s.value(m.normal_scale);
   s.value(m.alpha_cutoff);
   s.value(m.reflectivity);
   s.flag(m.two_sided);

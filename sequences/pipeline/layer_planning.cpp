@@ -314,6 +314,20 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
   return assessment;
 }
 
+void note_rest(const Pipeline& pipeline, PipelineState& state, int frame) {
+  if (pipeline.settings.regulator.settle_frames < 1) return;
+  const std::vector<LayerState>& states = captured_states(pipeline, state, frame);
+  for (const Layer& layer : state.layers) {
+    const LayerState& now = states[layer.id];
+    RestMemory& rest = state.memory[layer.id].rest;
+    if (now.layer != layer.id || rest.frame == frame) continue;
+    const bool rests = rest.seen && rest.frame == frame - 1 && now.same_pixels(*rest.seen);
+    rest.frames = rests ? rest.frames + 1 : 0;
+    if (!rests) rest.seen = now;
+    rest.frame = frame;
+  }
+}
+
 LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int layer_id, int frame) {
   const Layer& layer = state.layers[layer_id];
   const LayerMemory& memory = state.memory[layer_id];
@@ -326,6 +340,7 @@ LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int
   if (memory.then) assessment.frames_since_render = std::abs(frame - memory.frame_rendered);
   assessment.layer = layer.id;
   assessment.frames_short_of_area = memory.frames_short_of_area;
+  assessment.frames_at_rest = memory.rest.frame == frame ? memory.rest.frames : 0;
   see_through_resolution(assessment, memory.resolution);
   assessment.preferences = layer.preferences;
   assessment.in_view = now.touches_display;

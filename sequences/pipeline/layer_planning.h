@@ -67,6 +67,10 @@ regulator::LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTa
                                          const layers::SpritePlacement& placement,
                                          const layers::LayerState& now, int frames_since_render);
 
+/// Counts for how many frames each layer has been at rest, if the regulator asks for it. Of layers that were not
+/// looked at in the frame before, as of an aggregate that is made, the count begins.
+void note_rest(const Pipeline& pipeline, PipelineState& state, int frame);
+
 /// What the regulator knows about `layer` at `frame`.
 regulator::LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int layer, int frame);
 

@@ -57,6 +57,13 @@ struct Pipeline {
   bool sorts_visibility = false;     ///< the effect visibility_sort is called for
 };
 
+/// Since when is a layer at rest (regulator/settle.h)? Kept only where the regulator asks for it.
+struct RestMemory {
+  std::optional<layers::LayerState> seen;  ///< in `frame`
+  int frame = -1;
+  int frames = 0;  ///< LayerAssessment::frames_at_rest
+};
+
 /// What is remembered of one layer: how it was at the instant as of which it was last rendered.
 struct LayerMemory {
   std::optional<layers::LayerState> then;  ///< empty: never rendered
@@ -69,6 +76,7 @@ struct LayerMemory {
   double resolution = 1;               ///< of the sprite, relative to what the layer's author asks for
   bool predicted = false;  ///< `then` was extrapolated in frame_rendered, it is not the scene's own motion
   int frames_short_of_area = 0;  ///< frames in a row in which it was deferred for want of pixels or chunks
+  RestMemory rest;
 };
 
 /// What is known of one frame of the motion: the states of all layers, and where their sprites would lie as

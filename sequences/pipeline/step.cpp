@@ -112,8 +112,9 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
     if (decision.action == Action::Drop) continue;
     LayerMemory& memory = state.memory[decision.layer];
     if (decision.action == Action::Rerender) {
-      const int instant =
-          looks_ahead(pipeline) ? decide_instant(pipeline, state, report.frame, decision) : report.frame;
+      const int instant = looks_ahead(pipeline) && !decision.settled
+                              ? decide_instant(pipeline, state, report.frame, decision)
+                              : report.frame;
       // The placement first: it depends on how long the old sprite lasted.
       memory.placement = captured_placement(pipeline, state, decision.layer, instant);
       memory.then = captured_states(pipeline, state, instant)[decision.layer];
@@ -298,6 +299,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   const Stopwatch plan_watch;
   begin_frame(pipeline, state, frame);
   report.order = order_of(pipeline, state, frame);
+  note_rest(pipeline, state, frame);
   report.layers = state.layers;
   report.render_by_layer.resize(report.layers.size());
   report.assessments.reserve(report.layers.size());

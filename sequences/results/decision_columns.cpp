@@ -62,7 +62,8 @@ DecisionColumns what_was_done() {
           computed<Row>("decision", "decision", "",
                         "reuse (warp the old sprite), rerender, or drop (out of view)",
                         [](const Row& r) { return regulator::name(r.decision.action); }),
-          computed<Row>("reason", "reason", "", "why, with the numbers that decided",
+          computed<Row>("reason", "reason", "",
+                        "why, with the numbers that decided; settled: it was shown enlarged, and is at rest",
                         [](const Row& r) { return r.decision.reason; })};
 }
 

@@ -44,10 +44,11 @@ void budget(Budget& b, const Visit& visit) {
 
 template <typename Options, typename Visit>
 void regulator(Options& options, const Visit& visit) {
-  auto& [policy, hold_frames, color_warp, of_thresholds, lookahead, of_budget] = options;
+  auto& [policy, hold_frames, color_warp, settle_frames, of_thresholds, lookahead, of_budget] = options;
   visit("policy", policy);
   visit("hold_frames", hold_frames);
   visit("color_warp", color_warp);
+  visit("settle_frames", settle_frames);
   thresholds(of_thresholds, visit);
   auto& [lookahead_frames, predict] = lookahead;
   visit("lookahead_frames", lookahead_frames);

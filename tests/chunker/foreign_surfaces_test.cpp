@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "chunker/texture.h"
+#include "layers/tangents.h"
 #include "tests/chunker/shade_support.h"
 
 namespace talisman::chunker::tests {
@@ -70,6 +71,66 @@ TEST(ForeignSurface, EmissiveMapsAreDrawnAsDefined) {
   mesh.emissive_uvs = mesh.uvs;
   for (layers::vec2& uv : mesh.emissive_uvs) uv = 0.5f * uv + layers::vec2(0.1f, 0.2f);
   expect_like_the_definition(shaded);
+}
+
+/// A bump in each cell of the picture, by the bytes of (x, y, 1).
+layers::Texture bumps() {
+  layers::Texture texture{"bumps", 8, 8, {}};
+  for (int y = 0; y < 8; ++y)
+    for (int x = 0; x < 8; ++x)
+      texture.rgba.insert(texture.rgba.end(), {static_cast<std::uint8_t>(28 * x + 20),
+                                               static_cast<std::uint8_t>(230 - 28 * y), 230, 255});
+  return texture;
+}
+
+ShadeScene bumpy_scene() {
+  ShadeScene shaded;
+  shaded.scene.textures.push_back(bumps());
+  for (const int part : {ShadeScene::kFloor, ShadeScene::kBall}) {
+    layers::derive_tangents(shaded.scene.meshes[part]);
+    shaded.scene.materials[part].normal_texture = 2;
+    shaded.scene.materials[part].normal_scale = 0.7f;
+  }
+  return shaded;
+}
+
+TEST(ForeignSurface, NormalMapsAreDrawnAsDefined) {
+  ShadeScene shaded = bumpy_scene();
+  expect_like_the_definition(shaded);
+  layers::Mesh& mesh = shaded.scene.meshes[ShadeScene::kFloor];
+  mesh.normal_uvs = mesh.uvs;
+  for (layers::vec2& uv : mesh.normal_uvs) uv = 0.5f * uv + layers::vec2(0.1f, 0.2f);
+  shaded.scene.materials[ShadeScene::kBall].two_sided = true;
+  expect_like_the_definition(shaded);
+  ShadeScene looked_up = bumpy_scene();
+  for (const ShadeTerm term : kAllTerms) {
+    const ShadeInputs inputs = looked_up.inputs(term, ShadeScene::kSpot);
+    expect_same(looked_up.render(inputs, exact_options()).sprite,
+                looked_up.reference(inputs, exact_options()), name_of(term));
+  }
+}
+
+TEST(ForeignSurface, AFlatNormalMapChangesAtMostOneCodeValue) {
+  ShadeScene shaded = bumpy_scene();
+  layers::Texture& flat = shaded.scene.textures[2];
+  for (std::size_t i = 0; i < flat.rgba.size(); ++i) flat.rgba[i] = i % 4 < 2 ? 128 : 255;
+  for (layers::Material& material : shaded.scene.materials) material.specular = vec3(0);
+  ShadeScene plain = shaded;
+  for (layers::Material& material : plain.scene.materials) material.normal_texture = -1;
+  EXPECT_LE(difference(shaded.render({}).sprite, plain.render({}).sprite).largest, 1);
+}
+
+TEST(ForeignSurface, NormalMapsNeedAPixelToBeSeen) {
+  const ShadeScene bumpy = bumpy_scene();
+  ShadeScene plain = bumpy_scene();
+  for (layers::Material& material : plain.scene.materials) material.normal_texture = -1;
+  for (const Shading shading : {Shading::Flat, Shading::Gouraud}) {
+    RenderOptions options;
+    options.shading = shading;
+    expect_same(bumpy.render({}, options).sprite, plain.render({}, options).sprite, "shading");
+  }
+  EXPECT_GT(difference(bumpy.render({}).sprite, plain.render({}).sprite).largest, 20);
+  EXPECT_GT(PreparedScene(bumpy.scene).texture_bytes(), PreparedScene(plain.scene).texture_bytes());
 }
 
 TEST(ForeignSurface, LampsThatFadeAreDrawnAsDefined) {

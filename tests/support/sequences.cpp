@@ -3,6 +3,7 @@
 
 #include <glm/gtc/quaternion.hpp>
 
+#include "layers/tangents.h"
 #include "tests/support/random_scene.h"
 #include "tests/support/room.h"
 #include "tests/support/scenes.h"
@@ -38,7 +39,7 @@ void add_pane(Scene& scene) {
 }
 
 /// The lamp sways, the eye goes by, the pane (the last node) crosses quickly enough to be blurred.
-/// A square that glows and, in 2 s, bends its upper half upwards.
+/// A rippled square that glows and, in 2 s, bends its upper half upwards.
 void add_sail(Scene& scene) {
   Node stand;
   stand.name = "sail";
@@ -56,6 +57,9 @@ void add_sail(Scene& scene) {
   scene.materials.back().emissive = vec3(0.5f);
   scene.materials.back().emissive_texture = 0;
   scene.materials.back().two_sided = true;
+  scene.materials.back().normal_texture = static_cast<int>(scene.textures.size());
+  scene.textures.push_back({"ripples", 2, 1, {218, 128, 218, 255, 37, 128, 218, 255}});
+  layers::derive_tangents(mesh);
   layers::MorphTrack grow;
   grow.weights = {{{0, 2}, {0, 1}, layers::Interpolation::Linear}};
   scene.tracks.push_back({node, grow});

@@ -39,6 +39,14 @@ void add_thresholds(std::vector<RegulatorSetting>& settings, const RegulatorOpti
   }
 }
 
+void add_settling(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base) {
+  for (const int n : {1, 4, 16}) {
+    RegulatorOptions options = under(base, Policy::Threshold);
+    options.settle_frames = n;
+    settings.push_back({"threshold settled", "frames", double(n), options});
+  }
+}
+
 void add_budgets(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base,
                  double polygons_per_frame, regulator::ChoiceRule choice, const std::string& series) {
   for (const double percent : compared_budgets()) {
@@ -68,6 +76,7 @@ std::vector<RegulatorSetting> regulator_settings(const RegulatorOptions& base, d
   add_periods(settings, base, Policy::Hold);
   add_periods(settings, base, Policy::Interpolate);
   add_thresholds(settings, base, Policy::Threshold, "threshold");
+  add_settling(settings, base);
   add_thresholds(settings, base, Policy::Lookahead, "lookahead " + std::to_string(kComparedLookahead));
   add_thresholds(settings, base, Policy::Oracle, "oracle");
   add_budgets(settings, base, polygons_per_frame, regulator::ChoiceRule::Paper, "budget");

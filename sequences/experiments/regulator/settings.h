@@ -6,6 +6,8 @@
 ///   reference                                   every layer, every frame: the truth, and the full price
 ///   hold, interpolate      N = 2, 3, 5, 8       frames
 ///   threshold, lookahead 16, oracle             0.25 … 8 px in octaves, the same for all three
+///   threshold settled      N = 1, 4, 16         frames at rest after which what is enlarged is drawn again, at the
+///                                               sequence's own threshold (regulator/settle.h)
 ///   budget, budget best    5 … 80 %             of the polygons that `reference` draws per frame, chosen as in the
 ///                                               paper or by the safe choice (regulator/budget.h)
 ///

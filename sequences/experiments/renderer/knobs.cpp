@@ -122,6 +122,10 @@ void add_lights(LadderBuilder& ladder) {
     ladder.render_rung(label, [shading = shading](auto& render) { render.shading = shading; });
   ladder.truth_rung("phong");
 
+  ladder.pass("normal map", WorkKind::TextureSamples, Effect::NormalMap);
+  ladder.rung("off", [](Variant& variant) { variant = without_effect(variant, Effect::NormalMap); });
+  ladder.truth_rung("on");
+
   ladder.pass("shadow map", WorkKind::MapBytes, Effect::ShadowMap);
   for (const int px : {128, 256, 512, 1024})
     ladder.shadow_rung(number(px, " px"), [&](auto& shadow) { shadow.resolution_px = px; });

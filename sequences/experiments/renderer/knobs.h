@@ -8,6 +8,7 @@
 ///     merge tolerances    the default, 0
 ///     texture filter      nearest, bilinear, trilinear, anisotropy 2 … 16        where a texture is called for
 ///     shading             flat, Gouraud, Phong                                   … lighting
+///     normal map          off, on                                                … normal maps
 ///     shadow map          128 … 2048 texels                                      … a shadow map
 ///     shadow filter       percentage-closer radius 0 … 3 texels                  … a shadow map
 ///   through sprites (policy reference)

@@ -36,6 +36,7 @@ struct PixelCase {
   std::vector<Pixel> pixels;
   int frame = 0;  ///< at 10 per second
   std::string light = "[1, 1, 1]";
+  std::string lights{};  ///< a list of lights instead of that one
 };
 
 // --- Parts of files
@@ -128,12 +129,12 @@ inline void expect_pixels(const PixelCase& wanted) {
   Gltf file;
   wanted.change(file);
   folder.write("m.gltf", file.text());
-  const Sequence sequence = sequences::load_sequence(
-      folder.write("m.yaml",
-                   "frames: 21\nfps: 10\ndisplay: [64, 64]\nmodels: [{id: m, file: m.gltf}]\n"
-                   "camera: {fov_deg: 53.13010235, near_m: 0.1, far_m: 100, position: [0, 0, 3]}\n"
-                   "lights: [{kind: ambient, color: " +
-                       wanted.light + "}]\n"));
+  const Sequence sequence = sequences::load_sequence(folder.write(
+      "m.yaml",
+      "frames: 21\nfps: 10\ndisplay: [64, 64]\nmodels: [{id: m, file: m.gltf}]\n"
+      "camera: {fov_deg: 53.13010235, near_m: 0.1, far_m: 100, position: [0, 0, 3]}\n"
+      "lights: " +
+          (wanted.lights.empty() ? "[{kind: ambient, color: " + wanted.light + "}]" : wanted.lights) + "\n"));
   sequences::Settings settings;
   settings.view.display_px = sequence.display_px;
   settings.fps = sequence.fps;

@@ -69,10 +69,10 @@ TEST_P(WithoutEffect, IsNotCalledForAnyMore) {
 TEST_P(WithoutEffect, NothingElseGoesThanTheHeaderSays) {
   // What the four shade layers and the surfaces under them cannot do without one another.
   const std::map<Effect, std::set<Effect>> also = {
-      {Effect::Texture, {Effect::MipFilter, Effect::TextureLayers, Effect::EmissiveMap}},
+      {Effect::Texture, {Effect::MipFilter, Effect::TextureLayers, Effect::EmissiveMap, Effect::NormalMap}},
       {Effect::Lighting,
        {Effect::SpecularHighlight, Effect::ColorWarp, Effect::ShadowMap, Effect::ShadowLayer,
-        Effect::SpecularLayer, Effect::EmissiveMap, Effect::LightFalloff,
+        Effect::SpecularLayer, Effect::EmissiveMap, Effect::LightFalloff, Effect::NormalMap,
         Effect::LayerResolution}},  // the shadow's was the only resolution of its own
       {Effect::SpecularHighlight, {Effect::SpecularLayer}},
       {Effect::ShadowMap, {Effect::ShadowLayer, Effect::LayerResolution}},

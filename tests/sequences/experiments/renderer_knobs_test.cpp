@@ -57,10 +57,10 @@ TEST(RendererLadder, TurnsEveryKnobWhereAllEffectsAreCalledFor) {
     EXPECT_TRUE(knob.called()) << knob.name << ": " << knob.why_not;
     names.push_back(knob.name);
   }
-  EXPECT_THAT(names, ElementsAre("samples", "merge tolerances", "texture filter", "shading", "shadow map",
-                                 "shadow filter", "sprite resolution", "all shade layers", "shadow layers",
-                                 "specular layers", "reflection layers", "texture layers", "compression",
-                                 "motion blur"));
+  EXPECT_THAT(names, ElementsAre("samples", "merge tolerances", "texture filter", "shading", "normal map",
+                                 "shadow map", "shadow filter", "sprite resolution", "all shade layers",
+                                 "shadow layers", "specular layers", "reflection layers", "texture layers",
+                                 "compression", "motion blur"));
 }
 
 TEST(RendererLadder, GoesFromCoarseToFine) {
@@ -74,6 +74,7 @@ TEST(RendererLadder, GoesFromCoarseToFine) {
   EXPECT_THAT(values_of("shadow filter", [](const Variant& v) { return shadow_of(v).pcf_radius; }),
               ElementsAre(0, 1, 2, 3));
   EXPECT_THAT(labels_of("shading"), ElementsAre("flat", "gouraud", "phong"));
+  EXPECT_THAT(labels_of("normal map"), ElementsAre("off", "on"));
   EXPECT_THAT(labels_of("sprite resolution"), ElementsAre("0.25", "0.5", "0.71", "1", "1.41", "2"));
   EXPECT_THAT(labels_of("compression"),
               ElementsAre("quality 30", "quality 50", "quality 70", "quality 85", "quality 95", "off"));
@@ -95,6 +96,8 @@ TEST(RendererLadder, OneKnobAloneIsTurned) {
     for (const layers::Layer& layer : v.sequence.layers.layers)
       if (layer.kind != layers::LayerKind::Geometry && layer.preferences.resolution_scale != 1)
         is.insert("shade layers");
+    for (const layers::Material& material : v.sequence.scene->materials)
+      if (material.normal_texture >= 0) is.insert("normal map");
     return is;
   };
   for (const Knob& knob : ladder().knobs) {

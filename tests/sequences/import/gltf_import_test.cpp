@@ -265,9 +265,10 @@ TEST(GltfMaterial, UnlitAndDoubleSidedAreKept) {
 
 TEST(GltfMaterial, WhatIsNotDrawnIsNamedOnce) {
   Gltf file = textured();
-  file.json["materials"][0]["normalTexture"] = {{"index", 0}};
-  file.json["materials"].push_back({{"name", "wood"}, {"normalTexture", {{"index", 0}}}});
-  EXPECT_THAT(file.import().warnings, ElementsAre("normal maps are not drawn: 'paint', 'wood'"));
+  const Json dim = {{"KHR_materials_specular", {{"specularTexture", {{"index", 0}}}}}};
+  file.json["materials"][0]["extensions"] = dim;
+  file.json["materials"].push_back({{"name", "wood"}, {"extensions", dim}});
+  EXPECT_THAT(file.import().warnings, ElementsAre("specular maps are not drawn: 'paint', 'wood'"));
 }
 
 // --- Extensions

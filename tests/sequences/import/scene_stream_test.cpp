@@ -37,13 +37,18 @@ ImportedModel full_model() {
   mesh.colors.assign(mesh.positions.size(), layers::vec3(0.5f));
   mesh.alphas.assign(mesh.positions.size(), 0.25f);
   mesh.emissive_uvs.assign(mesh.positions.size(), layers::vec2(2, 3));
-  mesh.morphs.push_back({std::vector<layers::vec3>(mesh.positions.size(), layers::vec3(1, 2, 3)), {}});
+  mesh.morphs.push_back({std::vector<layers::vec3>(mesh.positions.size(), layers::vec3(1, 2, 3)), {}, {}});
+  mesh.normal_uvs.assign(mesh.positions.size(), layers::vec2(4, 5));
+  mesh.tangents.assign(mesh.positions.size(), layers::vec4(0, 0.6f, 0.8f, -1));
+  mesh.morphs[0].tangents.assign(mesh.positions.size(), layers::vec3(0, 0, 0.5f));
   model.scene.nodes.back().morph_weights = {0.75};
   layers::MorphTrack morph;
   morph.weights = {{{0, 1}, {0, 1}, layers::Interpolation::CubicSpline, {0, 2}, {3, 0}}};
   morph.loop_end_s = 5;
   model.scene.tracks.insert(model.scene.tracks.begin(), {last, morph});
   model.scene.materials[0].emissive_texture = 0;
+  model.scene.materials[0].normal_texture = 0;
+  model.scene.materials[0].normal_scale = -0.5f;
   model.scene.materials[0].alpha_cutoff = 0.5f;
   model.scene.textures[0].wrap_u = layers::Wrap::Clamp;
   model.scene.textures[0].wrap_v = layers::Wrap::Mirror;
@@ -131,7 +136,7 @@ TEST(SceneStream, BytesTooManyAreRefused) {
 TEST(SceneStream, ForeignBytesAndOtherVersionsAreRefused) {
   auto bytes = bytes_from_scene({});
   bytes[4] ^= 1;
-  EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("version 5, rule: 4"));
+  EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("version 4, rule: 5"));
   bytes[0] ^= 1;
   EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("magic"));
 }

@@ -214,6 +214,7 @@ Numbers numbers_of(const WholeRun& run, Effect effect) {
     case Effect::EmissiveMap:
     case Effect::Morphing:
     case Effect::LightFalloff:
+    case Effect::NormalMap:
     case Effect::SpecularHighlight:
     case Effect::Translucency:
     case Effect::LayerResolution:
