@@ -147,6 +147,7 @@ TEST(RendererLadder, WhatASceneDoesNotCallForIsNotMeasuredAndSaysWhy) {
   const RendererLadder plain = renderer_ladder(tests::run_of(tests::resting_sequence(1)));
   const std::vector<std::pair<std::string, std::string>> expected = {
       {"texture filter", "no material has a texture"},
+      {"normal map", "no lit part has a normal texture and tangents"},
       {"shadow map", "no light casts shadows"},
       {"shadow filter", "no light casts shadows"},
       {"all shade layers", "no layer factors a term of its shading"},

@@ -144,14 +144,16 @@ TEST(GltfTangents, TheEffectIsCalledForByItsMaterial) {
   ImportedModel model = file.import();
   model.scene.lights.emplace_back();  // a sun
   const layers::LayerSet set = layers::factor(model.scene, layers::default_layer_specs(model.scene));
+  layers::RunEffects coarse;
+  coarse.per_pixel = false;
   const auto call = [&](const layers::RunEffects& run) {
     return layers::effects_called_for(model.scene, set.layers, run).back();
   };
   EXPECT_EQ(call({}).effect, layers::Effect::NormalMap);
   EXPECT_TRUE(call({}).called);
   EXPECT_EQ(call({}).why, "material 'bark' has normal texture 'image 0'");
-  EXPECT_FALSE(call({.per_pixel = false}).called);
-  EXPECT_EQ(call({.per_pixel = false}).why, "the run does not shade per pixel");
+  EXPECT_FALSE(call(coarse).called);
+  EXPECT_EQ(call(coarse).why, "the run does not shade per pixel");
   model.scene.lights[0].kind = layers::Light::Kind::Ambient;
   EXPECT_FALSE(call({}).called);
   EXPECT_EQ(call({}).why, "no lit part has a normal texture and tangents");
