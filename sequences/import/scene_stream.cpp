@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint32_t kSceneMagic =
     0x4d534c54;  // "TLSM"; both ends run on one machine, so bytes are in its order
-constexpr std::uint32_t kVersion = 4;
+constexpr std::uint32_t kVersion = 5;
 
 [[noreturn]] void fail(const std::string& what) { throw InputError("scene stream: " + what); }
 
@@ -155,7 +155,9 @@ void fields(Stream& s, T& t) {
   s.choice(t.wrap_u, layers::Wrap::Mirror);
   s.choice(t.wrap_v, layers::Wrap::Mirror);
   s.flag(t.nearest);
+  s.flag(t.nearest_minified);
   s.flag(t.finest);
+  s.flag(t.one_level);
 }
 
 template <typename Stream, Of<layers::Material> T>
