@@ -216,9 +216,9 @@ Float4 look_up(const Shader& shader, const Pyramid& pyramid, const Interpolator&
   const Float4 coordinate = attribute(t, at, uv);
   const float u = coordinate[lane], v = coordinate[lane + 1];
   const MipLevel& finest = pyramid.levels[0];
-  if (shader.mipmaps && shader.filter == TextureFilter::Trilinear && !pyramid.finest) {
+  if (shader.mipmaps && shader.filter == TextureFilter::Trilinear) {
     const TextureDerivatives derivatives = texture_derivatives(t, at, uv, finest, lane);
-    if (pyramid.nearest && !(footprint_of(derivatives) > 1)) return ++samples, nearest(finest, u, v);
+    if (pyramid.is_special()) return ++samples, as_texture_says(pyramid, u, v, footprint_of(derivatives));
     if (shader.max_anisotropy > 1)
       return anisotropic(pyramid, u, v, derivatives, shader.max_anisotropy, samples);
     ++samples;

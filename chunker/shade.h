@@ -165,7 +165,7 @@ struct Shader {
   bool scalar_texels() const {
     return two_textures || max_anisotropy > 1 || filter == TextureFilter::Nearest ||
            emissive_map != nullptr || alpha_cutoff > 0 || vertex_alpha ||
-           (pyramid != nullptr && (pyramid->nearest || pyramid->finest));
+           (pyramid != nullptr && pyramid->is_special());
   }
   bool textured() const { return pyramid != nullptr || pyramid2 != nullptr || emissive_map != nullptr; }
   bool extended() const { return shadowed || reflection != nullptr; }

@@ -93,6 +93,21 @@ std::int64_t Pyramid::bytes() const {
   return sum;
 }
 
+Float4 as_texture_says(const Pyramid& pyramid, float u, float v, float footprint) {
+  const bool minified = footprint > 1;
+  const auto look_up = [&](int level) {
+    const MipLevel& texels = pyramid.levels[static_cast<std::size_t>(level)];
+    return (minified ? pyramid.nearest_minified : pyramid.nearest) ? nearest(texels, u, v)
+                                                                   : bilinear(texels, u, v);
+  };
+  if (!minified || pyramid.finest) return look_up(0);
+  const int last = static_cast<int>(pyramid.levels.size()) - 1;
+  const float lambda = std::min(0.5f * layers::coarse_log2(footprint), static_cast<float>(last));
+  if (pyramid.one_level) return look_up(static_cast<int>(std::ceil(lambda + 0.5f)) - 1);
+  const int whole = static_cast<int>(lambda);
+  return mix(look_up(whole), look_up(std::min(whole + 1, last)), lambda - static_cast<float>(whole));
+}
+
 Float4 anisotropic(const Pyramid& pyramid, float u, float v, const TextureDerivatives& derivatives,
                    int max_samples, int& samples) {
   const float xx = squared_length2(derivatives.x), yy = squared_length2(derivatives.y);
@@ -128,7 +143,9 @@ Pyramid decoded_pyramid(const layers::Texture& texture, bool coarser) {
   if (texture.width <= 0 || texture.height <= 0) return pyramid;
   if (texture.rgba.size() < static_cast<std::size_t>(texture.width) * texture.height * 4) return pyramid;
   pyramid.nearest = texture.nearest;
+  pyramid.nearest_minified = texture.nearest_minified;
   pyramid.finest = texture.finest;
+  pyramid.one_level = texture.one_level;
   pyramid.levels.push_back(decode_texels<kDecode>(texture));
   const auto& finest = pyramid.levels[0].texels;
   pyramid.opaque = std::all_of(finest.begin(), finest.end(), [](const Float4& t) { return t[3] == 1; });

@@ -34,8 +34,9 @@ struct Pyramid {
   std::vector<MipLevel> levels;               ///< empty: no texture
   std::vector<std::int32_t> widths, heights;  ///< of the levels, for look-ups in lanes
   bool opaque = true;                         ///< alpha is 1 in every texel of every level
-  bool nearest = false;                       ///< as Texture::nearest
-  bool finest = false;                        ///< as Texture::finest
+  bool nearest = false, nearest_minified = false, finest = false, one_level = false;  ///< as in Texture
+  /// Looked up otherwise than trilinearly.
+  bool is_special() const { return nearest || nearest_minified || finest || one_level; }
   bool wraps() const {
     return levels[0].wrap_u != layers::Wrap::Repeat || levels[0].wrap_v != layers::Wrap::Repeat;
   }
@@ -123,6 +124,10 @@ inline Float4 trilinear(const Pyramid& pyramid, float u, float v, float footprin
   const Float4 fine = bilinear(pyramid.levels[whole], u, v);
   return share > 0 ? mix(fine, bilinear(pyramid.levels[whole + 1], u, v), share) : fine;
 }
+
+/// As the texture says: minified where `footprint` > 1, from the levels on either side of λ, or the nearest of them,
+/// ⌈λ + ½⌉ - 1. [OpenGL ES 3.0, 3.8.10]
+Float4 as_texture_says(const Pyramid& pyramid, float u, float v, float footprint);
 
 /// Screen derivatives of (u, v) in texels of level 0: first two channels.
 struct TextureDerivatives {

@@ -65,8 +65,10 @@ struct Texture {
   std::vector<std::uint8_t> rgba;
   bool has_alpha = false;  ///< some texel has alpha < 255
   Wrap wrap_u = Wrap::Repeat, wrap_v = Wrap::Repeat;
-  bool nearest = false;  ///< magnified: the nearest texel alone instead of four
-  bool finest = false;   ///< minified: never a coarser level
+  bool nearest = false;           ///< magnified: the nearest texel alone instead of four
+  bool nearest_minified = false;  ///< minified: likewise, in each level
+  bool finest = false;            ///< minified: never a coarser level
+  bool one_level = false;         ///< minified: the nearest level alone instead of a mix of two
 };
 
 struct Material {

@@ -154,13 +154,14 @@ void add_default_view(layers::Scene& scene, double turn_s) {
 }
 
 void add_model_view(layers::Scene& scene, std::vector<layers::LayerSpec>& specs, const ModelView& view) {
-  const bool on_stage = view.stage && scene.cameras.empty() && scene.lights.empty();
+  const bool shown_by_us = view.stage && scene.cameras.empty(), lit_by_us = scene.lights.empty();
   const Sphere all = around(scene);
-  if (scene.lights.empty()) add_key_and_sky(scene, static_cast<float>(1 / view.exposure_lx));
+  if (lit_by_us) add_key_and_sky(scene, static_cast<float>(1 / view.exposure_lx));
   if (scene.cameras.empty()) add_orbit(scene, all, view.turn_s);
-  if (!on_stage) return;
+  if (!shown_by_us) return;
+  scene.background = layers::vec3(lit_by_us ? kBackdrop / static_cast<float>(view.exposure_lx) : kBackdrop);
+  if (!lit_by_us) return;  // other lights would show the ground
   scene.lights.back().casts_shadow = true;
-  scene.background = layers::vec3(kBackdrop / static_cast<float>(view.exposure_lx));
   add_ground(scene, all, specs);
 }
 

@@ -6,9 +6,9 @@
 ///   camera   an orbit around all parts, slightly from above; any unit scale is framed
 ///   lights   of a sequence: a sun and ambient light; of a bare model: a key light, and a sky of light from above and
 ///            from everywhere
-///   stage    of a bare model without camera and lights of its own: a grey backdrop, and a ground on which the key
-///            light throws the model's shadow. The ground has the backdrop's colour where it is lit: but for the
-///            shadow it is not seen.
+///   stage    of a bare model without a camera of its own: a grey backdrop, before which what no light reaches is seen
+///            as well; without lights of its own, too: a ground on which the key light throws the model's shadow. The
+///            ground has the backdrop's colour where it is lit: but for the shadow it is not seen.
 
 #include <vector>
 

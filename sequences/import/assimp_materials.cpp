@@ -109,7 +109,9 @@ layers::Material import_material(Import& import, const aiMaterial& from) {
   const aiColor4D base = property(from, AI_MATKEY_BASE_COLOR, diffuse);
   const bool opaque = std::string(property(from, AI_MATKEY_GLTF_ALPHAMODE, aiString()).C_Str()) == "OPAQUE";
   to.base_color = to_color(base);
-  to.opacity = opaque ? 1 : clean(property(from, AI_MATKEY_OPACITY, base.a), 0, 1, 1);
+  const float alpha =
+      base.a > 0 ? base.a : 1;  // a colour without alpha; what is clear says so by its opacity
+  to.opacity = opaque ? 1 : clean(property(from, AI_MATKEY_OPACITY, alpha), 0, 1, 1);
   to.emissive = to_color(property(from, AI_MATKEY_COLOR_EMISSIVE, aiColor4D(0, 0, 0, 1)));
   if (from.GetTextureCount(aiTextureType_EMISSIVE) > 0)
     to.emissive = layers::vec3(0);  // alone it would glow all over
@@ -148,6 +150,24 @@ void whiten_default(Import& import) {
   }
 }
 
+bool is_collada(const std::string& path) {
+  const std::string extension = std::filesystem::path(path).extension().string();
+  return extension.size() == 4 && std::string(".dae.DAE.zae.ZAE").find(extension) % 4 == 0;
+}
+
+/// Some exporters of COLLADA write how transparent a material is, where the format asks how opaque: in their files
+/// something is all clear, and nothing is opaque.
+void turn_transparency_over(Import& import) {
+  std::vector<layers::Material>& materials = import.model.scene.materials;
+  const auto has = [&](float opacity) {
+    return std::any_of(materials.begin(), materials.end(),
+                       [&](const layers::Material& m) { return m.opacity == opacity; });
+  };
+  if (!is_collada(import.place.path) || !has(0) || has(1)) return;
+  for (layers::Material& material : materials) material.opacity = 1 - material.opacity;
+  import.warn("nothing in it is opaque, and something is clear: transparency is taken the other way round");
+}
+
 }  // namespace
 
 void import_materials(Import& import) {
@@ -157,6 +177,7 @@ void import_materials(Import& import) {
     if (from) warn_of_maps(import, *from);
   }
   whiten_default(import);
+  turn_transparency_over(import);
   if (import.model.scene.materials.empty()) import.model.scene.materials.push_back({});
 }
 

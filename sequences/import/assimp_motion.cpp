@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <numbers>
 
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/exposure.h"
 #include "sequences/import/limits.h"
+#include "sequences/import/studio_cameras.h"
 
 namespace talisman::sequences {
 
@@ -117,16 +122,20 @@ bool import_light(Import& import, const aiLight& from, layers::Light& to) {
   if (has_direction && !(glm::length(to.direction) > 0)) to.direction = {0, 0, -1};
   for (int k = 0; k < 3; ++k)
     if (!(to.color[k] >= 0 && std::isfinite(to.color[k]))) to.color[k] = 0;
+  if (to.color == layers::vec3(0)) {
+    import.warn("light '" + to.name + "' gives no light");
+    return false;
+  }
   return is_finite(to.position) && is_finite(to.direction);
 }
 
-/// A node that looks along its own -z, below the camera's own node.
-int add_view_node(Import& import, const aiCamera& from) {
+/// A node that looks along its own -z.
+int add_view_node(Import& import, const std::string& camera, int parent, const layers::dvec3& eye,
+                  const layers::dvec3& ahead, const layers::dvec3& up) {
   layers::Node view;
-  view.name = std::string(from.mName.C_Str()) + "#view";
-  view.parent = node_or_none(import, from.mName);
-  view.local.translation = to_vector(from.mPosition);
-  const layers::dvec3 ahead = to_vector(from.mLookAt), up = to_vector(from.mUp);
+  view.name = camera + "#view";
+  view.parent = parent;
+  view.local.translation = eye;
   const layers::dvec3 right = glm::cross(ahead, up);
   if (glm::length(right) > 1e-9 && is_finite(right)) {
     const layers::dvec3 x = glm::normalize(right), z = -glm::normalize(ahead);
@@ -136,10 +145,54 @@ int add_view_node(Import& import, const aiCamera& from) {
   return static_cast<int>(import.model.scene.nodes.size()) - 1;
 }
 
+/// assimp says 0, 0, 1 where its reader of the format says nothing: ASE, OpenGEX, LightWave. Those look along -z
+/// (LightWave along +z of a left-handed space, which assimp turns over).
+layers::dvec3 ahead_of(const aiCamera& from) {
+  const layers::dvec3 ahead = to_vector(from.mLookAt);
+  const bool says_nothing = to_vector(from.mPosition) == layers::dvec3(0) &&
+                            ahead == layers::dvec3(0, 0, 1) && to_vector(from.mUp) == layers::dvec3(0, 1, 0);
+  return says_nothing ? -ahead : ahead;
+}
+
 double fov_y(const aiCamera& from) {
   const double aspect = from.mAspect > 0 ? from.mAspect : 1.0;
   const double fov = 2 * std::atan(std::tan(from.mHorizontalFOV / 2.0) / aspect);
   return std::isfinite(fov) && fov > 0.01 && fov < 3 ? fov : kDefaultFov_rad;
+}
+
+bool is_studio(const std::string& path) {
+  std::string extension = std::filesystem::path(path).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return extension == ".3ds";
+}
+
+bool is_moved(const Import& import, const std::string& node) {
+  for (const layers::Track& track : import.model.scene.tracks) {
+    if (import.model.scene.nodes[static_cast<std::size_t>(track.node)].name != node) continue;
+    const auto* keys = std::get_if<layers::TransformTrack>(&track.motion);
+    if (keys && std::max(keys->translation.times_s.size(), keys->rotation.times_s.size()) > 1) return true;
+  }
+  return false;
+}
+
+/// z is up in the file, and its tree's root turns it over.
+void import_studio_cameras(Import& import) {
+  std::ifstream in(import.place.path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const auto root = import.node_of.find(import.from.mRootNode);
+  for (const StudioCamera& from : studio_cameras(bytes)) {
+    const layers::dvec3 ahead = from.target - from.eye;
+    if (!(glm::length(ahead) > 0)) continue;
+    const layers::dvec3 up = glm::angleAxis(from.bank_rad, glm::normalize(ahead)) * layers::dvec3(0, 0, 1);
+    layers::Camera camera;
+    camera.name = from.name;
+    camera.node = add_view_node(import, from.name, root == import.node_of.end() ? -1 : root->second, from.eye,
+                                ahead, up);
+    camera.fov_y_rad = from.fov_rad;
+    import.model.scene.cameras.push_back(camera);
+    if (is_moved(import, from.name))
+      import.warn("camera '" + from.name + "' moves in the file, and stands here");
+  }
 }
 
 }  // namespace
@@ -171,15 +224,28 @@ void import_lights(Import& import) {
   import.model.exposure_lx = brightest;
 }
 
+/// Metres per unit of what hangs below a node: files in centimetres have a node that scales.
+double scale_below(const layers::Scene& scene, int node) {
+  double scale = 1;
+  for (; node >= 0; node = scene.nodes[static_cast<std::size_t>(node)].parent) {
+    const layers::dvec3& s = scene.nodes[static_cast<std::size_t>(node)].local.scale;
+    scale *= std::cbrt(std::abs(s.x * s.y * s.z));
+  }
+  return scale;
+}
+
 void import_cameras(Import& import) {
+  if (is_studio(import.place.path)) return import_studio_cameras(import);
   for (unsigned i = 0; i < import.from.mNumCameras; ++i) {
     const aiCamera* from = import.from.mCameras[i];
     if (!from) continue;
     layers::Camera camera;
     camera.name = from->mName.C_Str();
-    camera.node = add_view_node(import, *from);
+    camera.node = add_view_node(import, camera.name, node_or_none(import, from->mName),
+                                to_vector(from->mPosition), ahead_of(*from), to_vector(from->mUp));
     camera.fov_y_rad = fov_y(*from);
-    const double near_m = from->mClipPlaneNear, far_m = from->mClipPlaneFar;
+    const double scale = scale_below(import.model.scene, camera.node);
+    const double near_m = scale * from->mClipPlaneNear, far_m = scale * from->mClipPlaneFar;
     if (near_m > 0 && far_m > near_m && std::isfinite(far_m)) camera.near_m = near_m, camera.far_m = far_m;
     import.model.scene.cameras.push_back(camera);
   }

@@ -38,7 +38,10 @@ void apply_sampler(const GltfImport& import, const Json& from, layers::Texture& 
   texture.wrap_v = wrap_of(sampler, "wrapT");
   texture.nearest = index_of(sampler, "magFilter") == kNearest;
   const int minified = index_of(sampler, "minFilter");
+  texture.nearest_minified =
+      minified == kNearest || minified == kNearestMipNearest || minified == kNearestMipLinear;
   texture.finest = minified == kNearest || minified == kLinear;
+  texture.one_level = minified == kNearestMipNearest || minified == kLinearMipNearest;
 }
 
 /// The image of a texture: a WebP one where the texture has it, else its own; -1: none that is read.

@@ -104,6 +104,9 @@ class Child {
   pid_t pid_ = -1;
 };
 
+/// Wall time per processor time: the machine may have other work, and what it has must not decide what a file is.
+constexpr int kPatience = 10;
+
 struct Outcome {
   std::vector<std::uint8_t> bytes;
   std::string errors;
@@ -132,7 +135,7 @@ int milliseconds_until(Clock::time_point deadline) {
 
 /// Both streams until both end, or until the deadline.
 void drain(Pipe& out, Pipe& errors, const ImportLimits& limits, Outcome& outcome) {
-  const auto deadline = Clock::now() + std::chrono::seconds(limits.seconds);
+  const auto deadline = Clock::now() + kPatience * std::chrono::seconds(limits.seconds);
   const std::size_t most = static_cast<std::size_t>(limits.megabytes) << 20;
   while (out.read.get() >= 0 || errors.read.get() >= 0) {
     pollfd fds[2] = {{out.read.get(), POLLIN, 0}, {errors.read.get(), POLLIN, 0}};

@@ -35,7 +35,7 @@
 namespace talisman::sequences {
 
 struct ImportLimits {
-  int seconds = 60;               ///< ≥ 1; wall time and processor time of the child
+  int seconds = 60;               ///< ≥ 1; processor time of the child; it is waited for ten times as long
   std::int64_t megabytes = 8192;  ///< ≥ 64; address space of the child (not limited in sanitizer builds)
 };
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <optional>
 #include <unordered_map>
 
@@ -15,6 +14,7 @@
 #include <tiny_obj_loader.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/wide_text.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
@@ -48,8 +48,8 @@ void check_numbers(const std::string& line) {
 
 ObjWords words_of(const std::string& path) {
   ObjWords words;
-  std::ifstream in(path, std::ios::binary);
-  for (std::string line; std::getline(in, line);) {
+  const std::unique_ptr<std::istream> in = open_text(path);
+  for (std::string line; std::getline(*in, line);) {
     const std::size_t at = line.find_first_not_of(" \t");
     if (at == std::string::npos) continue;
     if (line[at] == 'v') check_numbers(line);
@@ -86,13 +86,13 @@ struct ObjContent {
 
 ObjContent content_of(const std::string& path, const ObjWords& words) {
   ObjContent content;
-  std::ifstream in(path, std::ios::binary);
-  if (!in) throw InputError("cannot be opened");
+  const std::unique_ptr<std::istream> in = open_text(path);
+  if (!*in) throw InputError("cannot be opened");
   NumberMaterials numbers(words);
   std::vector<tinyobj::material_t> unused;
   std::string warning, error;
-  if (!tinyobj::LoadObj(&content.attributes, &content.shapes, &unused, &warning, &error, &in, &numbers, true,
-                        false))
+  if (!tinyobj::LoadObj(&content.attributes, &content.shapes, &unused, &warning, &error, in.get(), &numbers,
+                        true, false))
     throw InputError("cannot be read as a model: " + error.substr(0, error.find('\n')));
   for (const tinyobj::shape_t& shape : content.shapes)
     for (const unsigned group : shape.mesh.smoothing_group_ids) content.has_groups |= group > 0;

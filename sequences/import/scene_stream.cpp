@@ -158,7 +158,9 @@ void fields(Stream& s, T& t) {
   s.choice(t.wrap_u, layers::Wrap::Mirror);
   s.choice(t.wrap_v, layers::Wrap::Mirror);
   s.flag(t.nearest);
+  s.flag(t.nearest_minified);
   s.flag(t.finest);
+  s.flag(t.one_level);
 }
 
 template <typename Stream, Of<layers::Material> T>

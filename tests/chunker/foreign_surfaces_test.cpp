@@ -53,12 +53,13 @@ TEST(ForeignSurface, WrappedTexturesAreDrawnAsDefined) {
   }
 }
 
-TEST(ForeignSurface, NearestAndFinestTexturesAreDrawnAsDefined) {
-  ShadeScene shaded;
-  shaded.scene.textures[0].nearest = true;
-  expect_like_the_definition(shaded);
-  shaded.scene.textures[0].finest = true;
-  expect_like_the_definition(shaded);
+TEST(ForeignSurface, TexturesOfOtherFiltersAreDrawnAsDefined) {
+  for (bool layers::Texture::*filter : {&layers::Texture::nearest, &layers::Texture::finest,
+                                        &layers::Texture::nearest_minified, &layers::Texture::one_level}) {
+    ShadeScene shaded;
+    shaded.scene.textures[0].*filter = true;
+    expect_like_the_definition(shaded);
+  }
 }
 
 TEST(ForeignSurface, EmissiveMapsAreDrawnAsDefined) {

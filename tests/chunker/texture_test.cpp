@@ -131,6 +131,29 @@ TEST(Trilinear, OddFootprintsAreHarmless) {
   }
 }
 
+// Two black texels and two white ones; the coarser levels are black and white, and grey. At u = 0.4 the levels give
+// bilinearly 0.1, 0.3 and 0.5, by the nearest texel 0, 0 and 0.5. The footprint is 4^λ.
+TEST(AsTextureSays, EachFilterOfMinifiedTextures) {
+  const auto value = [](bool layers::Texture::*a, bool layers::Texture::*b, float footprint) {
+    layers::Texture two_and_two =
+        texture(4, 1, {0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 255, 255, 255, 255, 255});
+    two_and_two.*a = two_and_two.*b = true;
+    return as_texture_says(build_pyramid(two_and_two), 0.4f, 0, footprint)[0];
+  };
+  using T = layers::Texture;
+  EXPECT_EQ(value(&T::nearest, &T::nearest, 1), 0);
+  EXPECT_NEAR(value(&T::nearest, &T::nearest, 4), 0.3, 1e-6);
+  EXPECT_NEAR(value(&T::nearest_minified, &T::nearest_minified, 1), 0.1, 1e-6);
+  EXPECT_EQ(value(&T::nearest_minified, &T::nearest_minified, 4), 0);
+  EXPECT_NEAR(value(&T::nearest_minified, &T::nearest_minified, 8), 0.25, 1e-6);  // λ = 1.5
+  EXPECT_NEAR(value(&T::one_level, &T::one_level, 1.9f), 0.1, 1e-6);              // λ < ½
+  EXPECT_NEAR(value(&T::one_level, &T::one_level, 2.1f), 0.3, 1e-6);
+  EXPECT_EQ(value(&T::one_level, &T::one_level, 1e9f), 0.5f);
+  EXPECT_EQ(value(&T::one_level, &T::nearest_minified, 2.1f), 0);
+  EXPECT_NEAR(value(&T::finest, &T::finest, 100), 0.1, 1e-6);
+  EXPECT_EQ(value(&T::finest, &T::nearest_minified, 100), 0);
+}
+
 TEST(CoarseLog2, IsMonotoneAndClose) {
   float before = coarse_log2(1e-6f);
   for (double x = 1e-6; x < 1e9; x *= 1.0007) {

@@ -11,6 +11,7 @@
 #include "sequences/pipeline/make_pipeline.h"
 #include "sequences/pipeline/step.h"
 #include "tests/sequences/temporary_folder.h"
+#include "tests/support/scenes.h"
 
 namespace talisman::sequences {
 namespace {
@@ -70,6 +71,22 @@ TEST(ModelView, WithoutAStageThereIsTheModelAlone) {
   EXPECT_EQ(bare.layers.layers.size(), 1u);
   EXPECT_EQ(bare.scene->background, layers::vec3(0));
   EXPECT_EQ(first_picture(bare)[0], 0);
+}
+
+// What no lamp of the file reaches is black: before black it would not be seen.
+TEST(ModelView, LampsWithoutACameraStandBeforeTheBackdropOnNoGround) {
+  layers::Scene scene;
+  scene.nodes.resize(1);
+  scene.meshes = {talisman::tests::cube_mesh()};
+  scene.materials.resize(1);
+  scene.parts.push_back({"cube", 0, 0, 0, -1});
+  scene.lights.resize(1);
+  std::vector<layers::LayerSpec> specs;
+  add_model_view(scene, specs, {.exposure_lx = 4});
+  EXPECT_NEAR(scene.background.x, 128.0 / 255 * 128 / 255, 1e-6);
+  EXPECT_EQ(scene.parts.size(), 1u);
+  EXPECT_EQ(scene.lights.size(), 1u);
+  EXPECT_TRUE(specs.empty());
 }
 
 TEST(ModelView, ExposureOfASequenceDividesItsLights) {

@@ -205,6 +205,7 @@ TEST(GltfTexture, SamplerSaysHowItIsLookedUp) {
   EXPECT_EQ(texture.wrap_v, layers::Wrap::Mirror);
   EXPECT_TRUE(texture.nearest);
   EXPECT_TRUE(texture.finest);
+  EXPECT_FALSE(texture.nearest_minified);
 }
 
 TEST(GltfTexture, TransformScalesTurnsAndMovesInThisOrder) {

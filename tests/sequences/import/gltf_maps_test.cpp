@@ -44,6 +44,29 @@ std::vector<int> reds_of(const ImportedModel& model) {
   return reds;
 }
 
+TEST(GltfTexture, SamplerSaysHowItIsMinified) {
+  struct Filter {
+    int number;
+    bool nearest, finest, one_level;
+  };
+  for (const Filter& f : std::initializer_list<Filter>{{9728, true, true, false},
+                                                       {9729, false, true, false},
+                                                       {9984, true, false, true},
+                                                       {9985, false, false, true},
+                                                       {9986, true, false, false},
+                                                       {9987, false, false, false}}) {
+    Gltf file = with_material({{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+    add_picture(file, {1, 2, 3, 4, 5, 6});
+    file.json["samplers"] = Json::array({{{"minFilter", f.number}}});
+    file.json["textures"][0]["sampler"] = 0;
+    const layers::Texture texture = file.import().scene.textures.at(0);
+    EXPECT_EQ(texture.nearest_minified, f.nearest) << f.number;
+    EXPECT_EQ(texture.finest, f.finest) << f.number;
+    EXPECT_EQ(texture.one_level, f.one_level) << f.number;
+    EXPECT_FALSE(texture.nearest) << f.number;  // it says nothing of what is magnified
+  }
+}
+
 TEST(GltfMaps, MetalnessIsInTheColourTexelByTexel) {
   Gltf file = with_material({{"name", "half metal"}});
   const int white = add_picture(file, {255, 255, 255, 255, 255, 255});

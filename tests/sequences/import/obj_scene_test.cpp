@@ -91,6 +91,19 @@ TEST(ReadObj, CornerThatIsNotThereIsRefused) {
   EXPECT_THAT(refusal("f 1 2 -4\n"), HasSubstr("thing.obj: "));
 }
 
+std::string utf16(const std::string& ascii, bool big) {
+  std::string bytes = big ? "\xFE\xFF" : "\xFF\xFE";
+  for (const char c : ascii) bytes += big ? std::string{'\0', c} : std::string{c, '\0'};
+  return bytes;
+}
+
+TEST(ReadObj, TextIn16BitsIsRead) {
+  const std::string text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  for (const bool big : {false, true})
+    EXPECT_EQ(read_obj_text(utf16(text, big)).scene.meshes.at(0).positions.at(1), layers::vec3(1, 0, 0))
+        << big;
+}
+
 TEST(ReadObj, LinesBesideFacesAreSaid) {
   EXPECT_THAT(read_obj_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n").warnings,
               ElementsAre("lines are not drawn"));

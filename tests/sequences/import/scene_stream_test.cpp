@@ -53,6 +53,7 @@ ImportedModel full_model() {
   model.scene.textures[0].wrap_u = layers::Wrap::Clamp;
   model.scene.textures[0].wrap_v = layers::Wrap::Mirror;
   model.scene.textures[0].nearest = true;
+  model.scene.textures[0].one_level = true;
   model.scene.lights[1].attenuation = {1, 2, 3};
   model.scene.lights[1].range_m = 4;
   model.warnings = {"one warning", ""};
@@ -105,7 +106,9 @@ TEST(SceneStream, FieldsArriveWhereTheyBelong) {
   EXPECT_EQ(back.textures[0].wrap_u, layers::Wrap::Clamp);
   EXPECT_EQ(back.textures[0].wrap_v, layers::Wrap::Mirror);
   EXPECT_TRUE(back.textures[0].nearest);
+  EXPECT_FALSE(back.textures[0].nearest_minified);
   EXPECT_FALSE(back.textures[0].finest);
+  EXPECT_TRUE(back.textures[0].one_level);
   const auto& morph = std::get<layers::MorphTrack>(back.tracks[0].motion);
   EXPECT_EQ(morph.weights[0].in_tangents, (std::vector<double>{0, 2}));
   EXPECT_EQ(morph.weights[0].out_tangents, (std::vector<double>{3, 0}));

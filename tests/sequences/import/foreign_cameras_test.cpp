@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: Apache-2.0
+// Cameras and lights of formats of which assimp says less than the file does.
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "sequences/import/model_import.h"
+#include "tests/sequences/temporary_folder.h"
+
+namespace talisman::sequences {
+namespace {
+
+using ::testing::Contains;
+using ::testing::HasSubstr;
+using tests::TemporaryFolder;
+
+void expect_near(const layers::dvec4& v, const layers::dvec3& expected) {
+  for (int k = 0; k < 3; ++k) EXPECT_NEAR(v[k], expected[k], 1e-5) << k;
+}
+
+/// A triangle, and a camera at (-10, 0, 5) that looks along x with z up: its own -z, so its rows are -y, z, -x.
+const char* const kAse = R"(*3DSMAX_ASCIIEXPORT	200
+*GEOMOBJECT {
+	*NODE_NAME "Tri"
+	*NODE_TM {
+		*NODE_NAME "Tri"
+		*TM_ROW0 1 0 0
+		*TM_ROW1 0 1 0
+		*TM_ROW2 0 0 1
+		*TM_ROW3 0 0 0
+	}
+	*MESH {
+		*MESH_NUMVERTEX 3
+		*MESH_NUMFACES 1
+		*MESH_VERTEX_LIST {
+			*MESH_VERTEX 0 0 0 0
+			*MESH_VERTEX 1 0 1 0
+			*MESH_VERTEX 2 0 0 1
+		}
+		*MESH_FACE_LIST {
+			*MESH_FACE 0: A: 0 B: 1 C: 2 AB: 1 BC: 1 CA: 1 *MESH_SMOOTHING 1 *MESH_MTLID 0
+		}
+	}
+}
+*CAMERAOBJECT {
+	*NODE_NAME "Eye"
+	*CAMERA_TYPE Free
+	*NODE_TM {
+		*NODE_NAME "Eye"
+		*TM_ROW0 0 -1 0
+		*TM_ROW1 0 0 1
+		*TM_ROW2 -1 0 0
+		*TM_ROW3 -10 0 5
+	}
+	*CAMERA_SETTINGS {
+		*CAMERA_FOV 0.5
+	}
+}
+)";
+
+TEST(AseCamera, LooksAlongItsOwnMinusZ) {
+  const TemporaryFolder folder;
+  const ImportedModel model = import_model(folder.write("eye.ase", kAse));
+  const layers::CameraState camera = model.scene.at(0).camera;
+  expect_near(camera.world_from_camera[3], {-10, 5, 0});  // y is up
+  expect_near(-camera.world_from_camera[2], {1, 0, 0});
+  expect_near(camera.world_from_camera[1], {0, 1, 0});
+  EXPECT_NEAR(camera.fov_y_rad, 0.5, 1e-6);
+}
+
+template <typename T>
+std::string bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+/// Id, length with the head, content.
+std::string chunk(std::uint16_t id, const std::string& content) {
+  return bytes_of<std::uint16_t>({id}) +
+         bytes_of<std::uint32_t>({static_cast<std::uint32_t>(content.size() + 6)}) + content;
+}
+
+std::string name(const std::string& text) { return text + std::string(1, '\0'); }
+
+/// A triangle, and a camera: eye, target, bank, lens.
+std::string studio_file(const std::vector<float>& camera) {
+  const std::string vertices = bytes_of<std::uint16_t>({3}) + bytes_of<float>({0, 0, 0, 1, 0, 0, 0, 0, 1});
+  const std::string faces = bytes_of<std::uint16_t>({1, 0, 1, 2, 7});
+  const std::string mesh = chunk(0x4100, chunk(0x4110, vertices) + chunk(0x4120, faces));
+  return chunk(0x4D4D, chunk(0x3D3D, chunk(0x4000, name("tri") + mesh) +
+                                         chunk(0x4000, name("eye") + chunk(0x4700, bytes_of(camera)))));
+}
+
+TEST(StudioCamera, LooksAtItsTarget) {
+  const TemporaryFolder folder;
+  // 2400 / 60 = 40 degrees.
+  const ImportedModel model = import_model(folder.write("eye.3ds", studio_file({0, -10, 3, 0, 0, 3, 0, 60})));
+  ASSERT_EQ(model.scene.cameras.size(), 1u);
+  const layers::CameraState camera = model.scene.at(0).camera;
+  expect_near(camera.world_from_camera[3], {0, 3, 10});  // z of the file is y, y is -z
+  expect_near(-camera.world_from_camera[2], {0, 0, -1});
+  expect_near(camera.world_from_camera[1], {0, 1, 0});
+  EXPECT_NEAR(camera.fov_y_rad, 40 * std::acos(-1) / 180, 1e-6);
+}
+
+TEST(StudioCamera, WithoutADirectionIsLeftOut) {
+  const TemporaryFolder folder;
+  EXPECT_TRUE(
+      import_model(folder.write("eye.3ds", studio_file({1, 2, 3, 1, 2, 3, 0, 60}))).scene.cameras.empty());
+  EXPECT_TRUE(
+      import_model(folder.write("nan.3ds", studio_file({NAN, 2, 3, 1, 2, 3, 0, 60}))).scene.cameras.empty());
+}
+
+TEST(StudioCamera, LensOutOfRangeIsThatOf45Degrees) {
+  const TemporaryFolder folder;
+  const ImportedModel model = import_model(folder.write("eye.3ds", studio_file({0, -10, 3, 0, 0, 3, 0, 0})));
+  EXPECT_NEAR(model.scene.at(0).camera.fov_y_rad, std::acos(-1) / 4, 1e-6);
+}
+
+/// COLLADA in centimetres: a triangle and a lamp.
+struct Collada {
+  std::string lamp = "1 0 0", libraries, nodes, bound;
+  std::string text() const;
+};
+
+std::string Collada::text() const {
+  return R"(<?xml version="1.0"?><COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="0.01" name="centimeter"/><up_axis>Y_UP</up_axis></asset>)" +
+         libraries + "<library_lights><light id=\"l\"><technique_common><point><color>" + lamp +
+         R"(</color></point></technique_common></light></library_lights>
+<library_geometries><geometry id="g"><mesh><source id="p"><float_array id="pa" count="9">0 0 0 1 0 0 0 1 0</float_array>
+<technique_common><accessor source="#pa" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
+<param name="Z" type="float"/></accessor></technique_common></source><vertices id="v"><input semantic="POSITION"
+source="#p"/></vertices><triangles count="1" material="paint"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p>
+</triangles></mesh></geometry></library_geometries><library_visual_scenes><visual_scene id="s"><node id="n" name="n">
+<instance_geometry url="#g">)" +
+         bound +
+         R"(</instance_geometry></node><node id="lamp" name="lamp"><instance_light url="#l"/></node>)" +
+         nodes +
+         "</visual_scene></library_visual_scenes><scene><instance_visual_scene "
+         "url=\"#s\"/></scene></COLLADA>";
+}
+
+TEST(ColladaCamera, PlanesAreInTheUnitsOfTheFile) {
+  const TemporaryFolder folder;
+  Collada file;
+  file.libraries = R"(<library_cameras><camera id="c"><optics><technique_common><perspective><yfov>40</yfov>
+<znear>10</znear><zfar>1000</zfar></perspective></technique_common></optics></camera></library_cameras>)";
+  file.nodes = R"(<node id="eye" name="eye"><translate>0 0 50</translate><instance_camera url="#c"/></node>)";
+  const layers::CameraState camera = import_model(folder.write("eye.dae", file.text())).scene.at(0).camera;
+  expect_near(camera.world_from_camera[3], {0, 0, 0.5});
+  EXPECT_NEAR(camera.near_m, 0.1, 1e-6);
+  EXPECT_NEAR(camera.far_m, 10, 1e-5);
+}
+
+/// A library of materials of a transparency each, the first of them on the triangle.
+Collada with_transparencies(const std::vector<std::string>& values) {
+  Collada file;
+  std::string effects, materials;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::string id = std::to_string(i);
+    effects += "<effect id=\"e" + id +
+               "\"><profile_COMMON><technique sid=\"t\"><lambert><diffuse><color>1 1 1 1</color>" +
+               "</diffuse><transparent><color>1 1 1 1</color></transparent><transparency><float>" +
+               values[i] + "</float></transparency></lambert></technique></profile_COMMON></effect>";
+    materials += "<material id=\"m" + id + "\" name=\"m" + id + "\"><instance_effect url=\"#e" + id +
+                 "\"/></material>";
+  }
+  file.libraries = "<library_effects>" + effects + "</library_effects><library_materials>" + materials +
+                   "</library_materials>";
+  file.bound =
+      "<bind_material><technique_common><instance_material symbol=\"paint\" "
+      "target=\"#m0\"/></technique_common>"
+      "</bind_material>";
+  return file;
+}
+
+// 0 is clear by the format. Where nothing is opaque and something is clear the exporter meant the opposite.
+TEST(ColladaTransparency, IsTurnedOverWhereNothingWouldBeOpaque) {
+  const TemporaryFolder folder;
+  const auto first_opacity = [&](const std::vector<std::string>& values, std::size_t warnings) {
+    const ImportedModel model = import_model(folder.write("t.dae", with_transparencies(values).text()));
+    EXPECT_EQ(model.warnings.size(), warnings);
+    const auto material = static_cast<std::size_t>(model.scene.parts.at(0).material);
+    return model.scene.materials.at(material).opacity;
+  };
+  EXPECT_FLOAT_EQ(first_opacity({"0"}, 1), 1);
+  EXPECT_FLOAT_EQ(first_opacity({"0.25", "0"}, 1), 0.75f);
+  EXPECT_FLOAT_EQ(first_opacity({"0", "1"}, 0), 0);
+  EXPECT_FLOAT_EQ(first_opacity({"0.25"}, 0), 0.25f);
+}
+
+TEST(ForeignText, ColladaIn16BitsIsReadWithItsNames) {
+  const TemporaryFolder folder;
+  std::string text = Collada().text(), wide = "\xFF\xFE";
+  text.replace(text.find("name=\"n\""), 8, "name=\"@\"");
+  for (const char c : text) wide += c == '@' ? std::string("\xE9\0", 2) : std::string{c, '\0'};  // é
+  const ImportedModel model = import_model(folder.write("wide.dae", wide));
+  ASSERT_EQ(model.scene.parts.size(), 1u);
+  EXPECT_THAT(model.scene.parts[0].name, HasSubstr("\u00e9"));
+}
+
+TEST(ForeignLight, WithoutColourIsLeftOutAndSaid) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(import_model(folder.write("lit.dae", Collada().text())).scene.lights.size(), 1u);
+  Collada unlit;
+  unlit.lamp = "0 0 0";
+  const ImportedModel dark = import_model(folder.write("dark.dae", unlit.text()));
+  EXPECT_TRUE(dark.scene.lights.empty());
+  EXPECT_THAT(dark.warnings, Contains(HasSubstr("'lamp' gives no light")));
+}
+
+}  // namespace
+}  // namespace talisman::sequences
