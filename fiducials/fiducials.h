@@ -19,6 +19,7 @@
 /// Every fiducial is at its best at rest and says where on the display its worst case is. A fiducial that
 /// cannot matter is not computed: `computed` is false and `why_not` says so.
 
+#include <string>
 #include <string_view>
 
 #include "layers/sprite_transform.h"
@@ -87,9 +88,11 @@ struct TurnedFaces {
 struct ShadeMotion {
   bool computed = false;
   std::string_view why_not = "";
-  double px = 0;  ///< best 0
-  dvec2 where_px{0, 0};
-  int trace = -1;  ///< index into LayerState::traces of the worst; -1: none moves
+  double px = 0;         ///< best 0
+  dvec2 where_px{0, 0};  ///< on the display
+  int trace = -1;        ///< index into LayerState::traces of the worst; -1: none moves
+  std::string
+      what{};  ///< that one in words, "the shadow of 'rotor' in light 'key'"; left to who knows the scene
 };
 
 struct Report {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "layers/built_effects.h"
@@ -29,11 +30,10 @@ constexpr double kBeyond_px = 1;
 
 bool exists(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
 
-/// Diagonal of that part of the receiver's bounds that is on the display.
-double extent_on_display(const LayerState& now) {
+/// That part of the receiver's bounds that is on the display.
+layers::RectD seen_part(const LayerState& now) {
   const layers::RectD display{{0, 0}, dvec2(now.view.display_px)};
-  const layers::RectD seen = layers::intersection(now.screen_bounds_px, display);
-  return std::hypot(seen.width(), seen.height());
+  return layers::intersection(now.screen_bounds_px, display);
 }
 
 /// Projects places in the receiver's space as it lies now.
@@ -81,6 +81,12 @@ void include(ShadeMotion& worst, double px, dvec2 where_px, int trace) {
   worst.trace = trace;
 }
 
+/// A place that is known in one state only crosses all that is seen.
+void include_crossing(const LayerState& now, int trace, ShadeMotion& worst) {
+  const layers::RectD seen = seen_part(now);
+  include(worst, std::hypot(seen.width(), seen.height()), (seen.lo + seen.hi) / 2.0, trace);
+}
+
 void add_trace(const Projector& projector, const LayerState& now, const ShadeTrace& then_trace,
                const ShadeTrace& now_trace, int index, ShadeMotion& worst) {
   if (!then_trace.on_receiver && !now_trace.on_receiver) return;
@@ -93,8 +99,7 @@ void add_trace(const Projector& projector, const LayerState& now, const ShadeTra
       const Projector::Path path = projector.path(from, to);
       include(worst, path.px, path.end, index);
     } else if (was != is) {
-      include(worst, extent_on_display(now), (now.screen_bounds_px.lo + now.screen_bounds_px.hi) / 2.0,
-              index);
+      include_crossing(now, index, worst);
     }
   }
 }
@@ -116,7 +121,8 @@ ShadeMotion shade_motion(const LayerState& then, const LayerState& now) {
   for (std::size_t i = 0; i < std::min(then.traces.size(), now.traces.size()); ++i)
     add_trace(projector, now, then.traces[i], now.traces[i], static_cast<int>(i), motion);
   if (then.traces.size() != now.traces.size())  // the receiver, or what it stands in, was not finite
-    include(motion, extent_on_display(now), now.screen_bounds_px.lo, -1);
+    include_crossing(now, -1, motion);
+  motion.where_px = glm::clamp(motion.where_px, dvec2(0), dvec2(now.view.display_px));
   return motion;
 }
 

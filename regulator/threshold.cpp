@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <cstdio>
+
 #include "regulator/decision.h"
 #include "regulator/policies.h"
 #include "regulator/resolution.h"
@@ -25,6 +27,20 @@ std::string photometric_violation(const fiducials::Photometric& p, const Thresho
   return {};
 }
 
+/// " (0.761 of place + 6.012 of the shadow of 'rotor' in light 'key')"; empty where nothing ran over the layer.
+std::string share_of_shade(const fiducials::Report& report) {
+  if (!(report.shade.px > 0)) return {};
+  constexpr double kShown_px = 0.0005;  // what three decimals show
+  const double place = report.geometric.px - report.shade.px;
+  const std::string what = report.shade.what.empty() ? "what ran over it" : report.shade.what;
+  char numbers[80];
+  if (place < kShown_px)
+    numbers[0] = '\0';
+  else
+    std::snprintf(numbers, sizeof numbers, "%.3f of place + %.3f ", place, report.shade.px);
+  return std::string(" (") + numbers + "of " + what + ")";
+}
+
 /// The first fiducial beyond its threshold, in words and numbers, or an empty string.
 /// The order is that of [LS97 5]: geometry first, because it is the one that users set.
 std::string first_violation(const LayerAssessment& layer, const Thresholds& limits) {
@@ -33,7 +49,7 @@ std::string first_violation(const LayerAssessment& layer, const Thresholds& limi
   if (layer.matched_points < kFewestMatchedPoints)
     return comparison("matched points", layer.matched_points, "<", kFewestMatchedPoints);
   if (!(f.geometric.px <= limits.geometric_px))
-    return comparison("geometric", f.geometric.px, ">", limits.geometric_px, "px");
+    return comparison("geometric", f.geometric.px, ">", limits.geometric_px, "px") + share_of_shade(f);
   if (std::string light = photometric_violation(f.photometric, limits); !light.empty()) return light;
   if (limits.magnification > 0 && !(f.sampling.magnification <= limits.magnification))
     return comparison("sampling: magnification", f.sampling.magnification, ">", limits.magnification);

@@ -7,6 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/content/value_type.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
@@ -26,12 +27,6 @@ std::vector<std::string> names_of(const LayerTable& layers, const std::vector<in
   std::vector<std::string> names;
   for (const int id : ids) names.push_back(layers[id].name);
   return names;
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text.append(text.empty() ? "" : ", ").append(name);
-  return text;
 }
 
 void add_order(OrderOverTime& result, int frame, std::vector<std::string> names) {

@@ -9,6 +9,7 @@
 
 #include <glm/trigonometric.hpp>
 #include "regulator/budget.h"
+#include "sequences/commands/ineffective.h"
 #include "sequences/commands/missing_effects.h"
 #include "sequences/commands/words.h"
 
@@ -233,18 +234,25 @@ ContentOptions content_options(const ContentWords& words) {
   return options;
 }
 
+void require_none(const std::vector<std::string>& warnings, bool strict, const std::string& file) {
+  if (!strict || warnings.empty()) return;
+  const bool is_one = warnings.size() == 1;
+  throw InputError(
+      (is_one ? "1 warning" : std::to_string(warnings.size()) + " warnings") + ", rule with --strict: none",
+      file);
+}
+
 Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words) {
   Sequence sequence = load_sequence(name_or_path, content_options(words));
   for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
   for (const std::string& note : sequence.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
-  if (words.strict && !sequence.warnings.empty())
-    throw InputError(std::to_string(sequence.warnings.size()) + " warnings, rule with --strict: none",
-                     sequence.file);
+  require_none(sequence.warnings, words.strict, sequence.file);
   return sequence;
 }
 
 ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {
-  const ResolvedRun run{settings_of(line, sequence), run_options_of(line, sequence, plan_only)};
+  ResolvedRun run{settings_of(line, sequence), run_options_of(line, sequence, plan_only)};
+  run.warnings = without_effect(line, run.settings.regulator.policy);
   require_built_effects(sequence, run.settings);
   return run;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sequences/content/sequence.h"
 #include "sequences/results/run.h"
@@ -47,10 +48,14 @@ struct CommandLine {
 struct ResolvedRun {
   Settings settings;
   RunOptions options;
+  std::vector<std::string> warnings{};  ///< of options that change nothing (ineffective.h)
 };
 
 /// Throws InputError that names option, value and rule.
 ContentOptions content_options(const ContentWords& words);
+
+/// Throws InputError with the number of warnings where --strict allows none.
+void require_none(const std::vector<std::string>& warnings, bool strict, const std::string& file);
 
 /// Reads the sequence and says its warnings on stderr, "warning: " before each. Throws InputError.
 Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words = {});

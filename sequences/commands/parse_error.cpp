@@ -38,7 +38,34 @@ std::string unknown_word(const std::string& written, const std::string& kind,
   return what + "must be one of " + names;
 }
 
+/// The nearest word, or the shortest that goes on as it begins.
+std::string nearest_of(const std::string& written, const std::vector<std::string>& known) {
+  std::string nearest = nearest_word(written, known);
+  constexpr std::size_t kFewest = 4;  // "--g" may be many
+  if (!nearest.empty() || written.size() < kFewest) return nearest;
+  for (const std::string& name : known)
+    if (name.rfind(written, 0) == 0 && (nearest.empty() || name.size() < nearest.size())) nearest = name;
+  return nearest;
+}
+
+std::string unexpected(const CLI::App& command, const std::vector<std::string>& arguments) {
+  if (const std::optional<UnknownOption> unknown = unknown_option(command, arguments))
+    return "'" + unknown->written + "' is no option of " + command.get_name() +
+           (unknown->nearest.empty() ? "; --help lists them" : "; did you mean '" + unknown->nearest + "'?");
+  return arguments.empty() ? ""
+                           : "'" + arguments.front() + "' is one argument too many for " +
+                                 command.get_name() + "; --help lists what it takes";
+}
+
 }  // namespace
+
+std::optional<UnknownOption> unknown_option(const CLI::App& command,
+                                            const std::vector<std::string>& arguments) {
+  for (const std::string& argument : arguments)
+    if (is_option(argument) && argument != "--")
+      return UnknownOption{name_of(argument), nearest_of(name_of(argument), options_of(command))};
+  return std::nullopt;
+}
 
 std::string explained(const CLI::App& app, const CLI::ParseError& error) {
   const std::vector<std::string> unknown = app.remaining(true);
@@ -46,11 +73,8 @@ std::string explained(const CLI::App& app, const CLI::ParseError& error) {
   if (parsed.empty() && !unknown.empty())
     return is_option(unknown.front()) ? unknown_word(name_of(unknown.front()), "option", options_of(app))
                                       : unknown_word(unknown.front(), "command", commands_of(app));
-  for (const std::string& argument : unknown) {
-    if (!is_option(argument)) continue;
-    const std::string nearest = nearest_word(name_of(argument), options_of(*parsed.front()));
-    if (!nearest.empty()) return std::string(error.what()) + "; did you mean '" + nearest + "'?";
-  }
+  if (const std::string what = parsed.empty() ? "" : unexpected(*parsed.front(), unknown); !what.empty())
+    return what;
   return error.what();
 }
 

@@ -4,10 +4,13 @@
 #include <cstdio>
 #include <optional>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include <oneapi/tbb/global_control.h>
 
 #include "sequences/files/errors.h"
+#include "sequences/files/quoted.h"
 
 namespace talisman::sequences {
 
@@ -15,13 +18,28 @@ namespace {
 
 /// Sprites that had to stay smaller than the display shows them.
 void say_capped_sprites(const Summary& summary, int max_sprite_px) {
+  std::vector<std::string> names;
   for (const LayerSummary& layer : summary.layers)
-    if (layer.is_capped)
-      std::fprintf(
-          stderr,
-          "warning: layer '%s': its sprite would have more than %d texels on a side, and has fewer than "
-          "was asked for; the key max_sprite_px of placement is the limit\n",
-          layer.name.c_str(), max_sprite_px);
+    if (layer.is_capped) names.push_back(layer.name);
+  if (names.empty()) return;
+  const bool is_one = names.size() == 1;
+  std::fprintf(
+      stderr,
+      "warning: %s %s: %s would have more than %d texels on a side, and %s fewer than was asked for; "
+      "the key max_sprite_px of placement is the limit\n",
+      is_one ? "layer" : "layers", quoted(names).c_str(), is_one ? "its sprite" : "their sprites",
+      max_sprite_px, is_one ? "has" : "have");
+}
+
+void say(const std::vector<std::string>& warnings) {
+  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+}
+
+/// The camera looks elsewhere, or the scene is where nobody looks for it.
+std::vector<std::string> what_is_not_seen(const Summary& summary, const std::string& file) {
+  for (const LayerSummary& layer : summary.layers)
+    if (layer.frames_shown > 0) return {};
+  return {file + ": no layer is in view in any frame"};
 }
 
 }  // namespace
@@ -30,6 +48,8 @@ int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool
   using oneapi::tbb::global_control;
   const Sequence sequence = load_with_warnings(line.sequence, line.content);
   const ResolvedRun resolved = resolve(line, sequence, plan_only);
+  say(resolved.warnings);
+  require_none(resolved.warnings, line.content.strict, sequence.file);
   std::optional<global_control> threads;
   if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);
   const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop);
@@ -39,6 +59,9 @@ int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool
                  outcome.summary.frames.size());
     return kPartialResult;
   }
+  const std::vector<std::string> unseen = what_is_not_seen(outcome.summary, sequence.file);
+  say(unseen);
+  require_none(unseen, line.content.strict, sequence.file);
   if (outcome.frames_kept > 0)
     out << "kept " << outcome.frames_kept << " complete frames of an earlier run\n";
   out << table_of(outcome.summary) << "\nresults in " << resolved.options.out << "\n";

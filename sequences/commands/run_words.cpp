@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sequences/commands/option_group.h"
+#include "sequences/commands/parse_error.h"
 #include "sequences/commands/words.h"
 #include "sequences/files/errors.h"
 
@@ -144,6 +145,17 @@ void add_content_options(CLI::App& command, ContentWords& words) {
 
 void add_picture_options(CLI::App& command, CommandLine& line) { add_pictures(command, line); }
 
+namespace {
+
+/// "geometric_px" of "--geometric-px".
+std::string as_keyword(std::string option) {
+  option.erase(0, option.find_first_not_of('-'));
+  std::replace(option.begin(), option.end(), '-', '_');
+  return option;
+}
+
+}  // namespace
+
 CommandLine command_line_from(const std::string& sequence, std::vector<std::string> words, bool plan_only) {
   CommandLine line;
   CLI::App app;
@@ -154,7 +166,11 @@ CommandLine command_line_from(const std::string& sequence, std::vector<std::stri
   try {
     app.parse(words);
   } catch (const CLI::ParseError& error) {
-    throw InputError(error.what());
+    const std::optional<UnknownOption> unknown = unknown_option(app, app.remaining());
+    if (!unknown) throw InputError(error.what());
+    throw InputError(
+        "there is no option '" + as_keyword(unknown->written) + "'" +
+        (unknown->nearest.empty() ? "" : "; did you mean '" + as_keyword(unknown->nearest) + "'?"));
   }
   return line;
 }

@@ -2,6 +2,7 @@
 #include "sequences/content/map_keys.h"
 
 #include <algorithm>
+#include <cctype>
 #include <set>
 
 #include "sequences/content/nearest_word.h"
@@ -83,6 +84,28 @@ void check_group(const KeyGroup& group, const YamlMap& map) {
   map.self().fail(group.why + (group.why.empty() ? "" : ": ") + "has the key " + listed(quoted));
 }
 
+bool names_word(const std::string& text, const std::string& word) {
+  const auto is_part = [&](std::size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) || text[at] == '_');
+  };
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1))
+    if ((at == 0 || !is_part(at - 1)) && !is_part(at + word.size())) return true;
+  return false;
+}
+
+/// With the values of the keys that the rule names: "has near_m '5' and far_m '2'".
+[[noreturn]] void refuse_by(const KeyRule& rule, const MapKeys& keys, const YamlMap& map) {
+  std::vector<std::string> values;
+  for (const KeyRow& row : keys.rows) {
+    if (!names_word(rule.words, row.key)) continue;
+    const YamlValue* value = map.find(row.key);
+    if (value || !row.standard.empty())
+      values.push_back(row.key + " " + (value ? value->written() : "'" + row.standard + "' (by default)"));
+  }
+  if (values.empty()) map.self().fail(rule.words);
+  map.self().fail_as("has " + listed(values, "and"), rule.words);
+}
+
 void find_tables(const MapKeys& keys, Parts& found);
 
 void find_tables(const ValueType& type, Parts& found) {
@@ -137,7 +160,7 @@ void MapKeys::read(const YamlMap& map, void* into) const {
   for (const MapKeys* part : parts) {
     for (const KeyGroup& group : part->groups) check_group(group, map);
     for (const KeyRule& rule : part->rules)
-      if (!rule.holds(into)) map.self().fail(rule.words);
+      if (!rule.holds(into)) refuse_by(rule, *part, map);
     for (const auto& end : part->ends) end(into);
   }
 }

@@ -8,8 +8,10 @@
 
 #include "sequences/content/asset_paths.h"
 #include "sequences/content/default_view.h"
+#include "sequences/content/nearest_word.h"
 #include "sequences/content/scene_builder.h"
 #include "sequences/content/sequence_file.h"
+#include "sequences/files/quoted.h"
 
 namespace talisman::sequences {
 
@@ -58,23 +60,50 @@ std::vector<layers::LayerSpec> specs_of_model(const layers::Scene& scene, const 
   return specs;
 }
 
+std::vector<std::string> parts_in_no_layer(const layers::Scene& scene, const layers::LayerSet& set) {
+  std::vector<std::string> names;
+  if (set.unassigned_parts == 0) return names;
+  std::vector<bool> taken(scene.parts.size());
+  for (const layers::Layer& layer : set.layers)
+    for (const int part : layer.parts) taken[static_cast<std::size_t>(part)] = true;
+  for (std::size_t i = 0; i < taken.size(); ++i)
+    if (!taken[i]) names.push_back(scene.parts[i].name);
+  return names;
+}
+
+/// "; did you mean 'ship/hull'", or what there is, of the first glob that matches no part; empty where all do.
+std::string help_with_globs(const layers::Scene& scene, const std::vector<std::string>& globs) {
+  std::vector<std::string> parts;
+  for (const layers::Part& part : scene.parts) parts.push_back(part.name);
+  for (const std::string& glob : globs) {
+    if (std::any_of(parts.begin(), parts.end(),
+                    [&](const std::string& part) { return layers::glob_matches(glob, part); }))
+      continue;
+    const std::string nearest = did_you_mean(glob, parts);
+    return nearest.empty() ? "; parts are " + quoted(parts) : nearest;
+  }
+  return {};
+}
+
 void finish(Sequence& sequence, BuiltScene built, std::vector<layers::LayerSpec> specs) {
   sequence.layers = layers::factor(built.scene, specs);
   sequence.layer_specs = std::move(specs);
   sequence.warnings.insert(sequence.warnings.end(), built.warnings.begin(), built.warnings.end());
   sequence.content_files.insert(sequence.content_files.end(), built.files.begin(), built.files.end());
-  if (const int parts = sequence.layers.unassigned_parts; parts > 0)
-    sequence.warnings.push_back(parts == 1 ? "1 part is taken by no layer and is not drawn"
-                                           : std::to_string(parts) +
-                                                 " parts are taken by no layer and are not drawn");
+  if (const std::vector<std::string> parts = parts_in_no_layer(built.scene, sequence.layers); !parts.empty())
+    sequence.warnings.push_back(sequence.file + ": " + std::to_string(parts.size()) +
+                                (parts.size() == 1 ? " part is taken by no layer and is not drawn: "
+                                                   : " parts are taken by no layer and are not drawn: ") +
+                                quoted(parts));
   sequence.scene = std::make_shared<const layers::Scene>(std::move(built.scene));
 }
 
 /// The place of the layer that a defect speaks of; the defect begins with "layer 'NAME'".
-[[noreturn]] void fail_at_layer(const SequenceFile& file, const std::string& defect) {
+[[noreturn]] void fail_at_layer(const SequenceFile& file, const layers::Scene& scene,
+                                const std::string& defect) {
   for (const LayerEntry& entry : file.layers)
     if (defect.rfind("layer '" + entry.spec.name + "':", 0) == 0)
-      throw InputError(defect, entry.file, entry.line);
+      throw InputError(defect + help_with_globs(scene, entry.spec.part_globs), entry.file, entry.line);
   throw InputError(defect, file.settings.file);
 }
 
@@ -103,7 +132,7 @@ Sequence load_yaml(const std::string& path, const ContentOptions& options) {
   finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) {
     file.settings.file = path;
-    fail_at_layer(file, sequence.layers.defect);
+    fail_at_layer(file, *sequence.scene, sequence.layers.defect);
   }
   sequence.explicit_order = resolve_layer_pairs(file.order, sequence.layers.layers);
   return sequence;
@@ -136,10 +165,10 @@ Sequence load_model(const std::string& path, const ContentOptions& options) {
   if (options.exposure_lx) expose(model, *options.exposure_lx);
   std::vector<layers::LayerSpec> specs = specs_of_model(model.scene, model.layer_tags);
   add_model_view(model.scene, specs, {turntable_s, options.stage, options.exposure_lx.value_or(1)});
-  sequence.notes = std::move(model.notes);
+  for (const std::string& note : model.notes) sequence.notes.push_back(path + ": " + note);
   BuiltScene built;
   built.scene = std::move(model.scene);
-  built.warnings = std::move(model.warnings);
+  for (const std::string& warning : model.warnings) built.warnings.push_back(path + ": " + warning);
   built.files = files_read(model);
   finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) throw InputError(sequence.layers.defect, path);
@@ -153,9 +182,14 @@ Sequence load_sequence(const std::string& name_or_path, const ContentOptions& op
   if (const std::string shipped = sequence_file_of(name_or_path); !shipped.empty())
     return load_yaml(shipped, options);
   std::error_code error;
-  if (!std::filesystem::is_regular_file(name_or_path, error))
+  if (std::filesystem::is_directory(name_or_path, error))
     throw InputError("'" + name_or_path +
-                     "' is no sequence and no file; sequences are: " + joined(known_sequences()));
+                     "' is a folder, rule: the name of a sequence, its YAML file or a model");
+  if (!std::filesystem::is_regular_file(name_or_path, error)) {
+    const std::string nearest = did_you_mean(name_or_path, known_sequences());
+    throw InputError("'" + name_or_path + "' is no sequence and no file" +
+                     (nearest.empty() ? "; sequences are: " + joined(known_sequences()) : nearest));
+  }
   return is_yaml(name_or_path) ? load_yaml(name_or_path, options) : load_model(name_or_path, options);
 }
 

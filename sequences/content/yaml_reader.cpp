@@ -35,9 +35,11 @@ std::string YamlValue::written() const {
 
 int YamlValue::line() const { return node_->Mark().line + 1; }
 
-void YamlValue::fail(const std::string& rule) const {
+void YamlValue::fail(const std::string& rule) const { fail_as("is " + written(), rule); }
+
+void YamlValue::fail_as(const std::string& is, const std::string& rule) const {
   const std::string what = path_.empty() ? "the file" : path_;
-  throw InputError(what + " is " + written() + ", rule: " + rule, file_, line());
+  throw InputError(what + " " + is + ", rule: " + rule, file_, line());
 }
 
 double YamlValue::number(const Range& range) const {
@@ -113,7 +115,8 @@ YamlMap YamlValue::map() const {
     if (!entry.first.IsScalar()) fail("keys are texts");
     const std::string key = entry.first.Scalar();
     const YamlValue value(entry.second, path_.empty() ? key : path_ + "." + key, file_);
-    if (!values.emplace(key, value).second) value.fail("each key only once");
+    const auto [first, is_new] = values.emplace(key, value);
+    if (!is_new) value.fail("each key only once, and it is in line " + std::to_string(first->second.line()));
   }
   return YamlMap(std::move(values), *this);
 }
@@ -161,7 +164,9 @@ YamlMap read_yaml_text(const std::string& text, const std::string& file) {
     if (documents.size() > 1)
       throw InputError("a second document, rule: one YAML document in a file", file,
                        std::max(1, documents[1].Mark().line + 1));
-    if (documents.empty() || !documents[0].IsMap())
+    if (documents.empty() || documents[0].IsNull())
+      throw InputError("is empty, rule: a sequence file is a YAML map", file);
+    if (!documents[0].IsMap())
       throw InputError("is not a map of keys and values, rule: a sequence file is a YAML map", file, 1);
     return YamlValue(documents[0], "", file).map();
   } catch (const YAML::Exception& e) {

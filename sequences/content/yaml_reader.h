@@ -44,11 +44,13 @@ class YamlValue {
   bool is_list() const;
   /// "what, the value, the rule" with file and line.
   [[noreturn]] void fail(const std::string& rule) const;
+  /// The same where more is to be said of the value: "camera has near_m '5', …".
+  [[noreturn]] void fail_as(const std::string& is, const std::string& rule) const;
+  std::string written() const;  ///< "'text'", "a list of 3", "a map"
   const std::string& file() const { return file_; }
   int line() const;  ///< from 1
 
  private:
-  std::string written() const;
   std::shared_ptr<const YAML::Node> node_;
   std::string path_;  ///< "camera.flight.keys[3].t"
   std::string file_;

@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <limits>
@@ -56,6 +59,29 @@ Json parsed(std::span<const std::uint8_t> text) {
   if (json.is_discarded()) throw InputError("cannot be read as a model: its JSON is damaged");
   if (!json.is_object()) throw InputError("cannot be read as a model: its JSON is no object");
   return json;
+}
+
+/// The bytes as they would be written: "67 6c 54 46".
+std::string first_bytes(std::span<const std::uint8_t> bytes) {
+  std::string text;
+  for (std::size_t i = 0; i < std::min<std::size_t>(4, bytes.size()); ++i) {
+    char hex[4];
+    std::snprintf(hex, sizeof hex, "%02x ", bytes[i]);
+    text += hex;
+  }
+  return text.substr(0, text.size() - 1);
+}
+
+/// A .glb may hold the JSON of a .gltf; anything else than that and GLB is neither.
+void check_magic(const std::string& path, std::span<const std::uint8_t> bytes) {
+  if (std::filesystem::path(path).extension() != ".glb") return;
+  if (bytes.size() >= 4 && word_at(bytes, 0) == kGlbMagic) throw InputError("ends inside a GLB header");
+  if (bytes.empty()) throw InputError("is empty, rule: a GLB file begins with 67 6c 54 46, \"glTF\"");
+  const auto text = std::find_if(bytes.begin(), bytes.end(), [](std::uint8_t c) { return !std::isspace(c); });
+  const bool may_be_json = text != bytes.end() && (*text == '{' || *text == 0xef);
+  if (!may_be_json)
+    throw InputError("has the magic number " + first_bytes(bytes) +
+                     ", rule: a GLB file begins with 67 6c 54 46, \"glTF\"");
 }
 
 void read_glb(std::span<const std::uint8_t> bytes, GltfFile& file) {
@@ -175,8 +201,10 @@ GltfFile read_gltf_file(const ModelPlace& place) {
   const std::vector<std::uint8_t> bytes = bytes_of_file(place.path);
   if (bytes.size() >= 12 && word_at(bytes, 0) == kGlbMagic)
     read_glb(bytes, file);
-  else
+  else {
+    check_magic(place.path, bytes);
     file.json = parsed(bytes);
+  }
   check_version(file.json);
   check_required(file.json);
   return file;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/import/model_import.h"
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <chrono>
@@ -14,6 +15,8 @@
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <glm/geometric.hpp>
 
 #include "sequences/files/program_folder.h"
 #include "sequences/import/model_cache.h"
@@ -185,6 +188,32 @@ std::string failure(const Outcome& outcome, const ImportLimits& limits) {
                      : why;
 }
 
+/// Nothing of such a triangle is ever drawn; of a needle of less than 1e-7 of its length there is as little to see.
+bool has_area(const layers::Mesh& mesh, std::size_t first_index) {
+  constexpr double kNeedle = 1e-7;
+  layers::dvec3 p[3];
+  for (std::size_t k = 0; k < 3; ++k) p[k] = mesh.positions[mesh.indices[first_index + k]];
+  const layers::dvec3 a = p[1] - p[0], b = p[2] - p[0], c = p[2] - p[1];
+  const double longest2 = std::max({glm::dot(a, a), glm::dot(b, b), glm::dot(c, c)});
+  return glm::length(glm::cross(a, b)) > kNeedle * longest2;
+}
+
+/// What deforms may have area later.
+void warn_of_no_area(ImportedModel& model) {
+  if (!model.scene.skins.empty()) return;
+  std::size_t triangles = 0;
+  for (const layers::Part& part : model.scene.parts) {
+    const layers::Mesh& mesh = model.scene.meshes[static_cast<std::size_t>(part.mesh)];
+    if (!mesh.morphs.empty()) return;
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+      if (has_area(mesh, i)) return;
+    triangles += mesh.indices.size() / 3;
+  }
+  if (triangles == 0) return;
+  model.warnings.push_back(triangles == 1 ? "its only triangle has no area"
+                                          : "all " + std::to_string(triangles) + " triangles have no area");
+}
+
 }  // namespace
 
 std::vector<std::string> files_read(const ImportedModel& model) {
@@ -201,7 +230,10 @@ ImportedModel import_model(const std::string& path, const ImportLimits& limits,
     throw InputError(std::filesystem::exists(path, error) ? "is not a file" : "does not exist", path);
   const std::string reader = importer_program();
   const CachedModel cached(path, limits, reader, folders);
-  if (auto model = cached.find()) return std::move(*model);
+  if (auto model = cached.find()) {
+    warn_of_no_area(*model);
+    return std::move(*model);
+  }
   std::vector<std::string> arguments = {reader, path, std::to_string(limits.seconds),
                                         std::to_string(limits.megabytes)};
   arguments.insert(arguments.end(), folders.begin(), folders.end());
@@ -210,6 +242,7 @@ ImportedModel import_model(const std::string& path, const ImportLimits& limits,
   try {
     ImportedModel model = model_from_bytes(outcome.bytes);
     cached.keep(outcome.bytes, model);
+    warn_of_no_area(model);
     return model;
   } catch (const InputError& e) {
     throw InputError(e.what(), path);

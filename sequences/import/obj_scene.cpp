@@ -14,6 +14,7 @@
 #include <tiny_obj_loader.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/obj_libraries.h"
 #include "sequences/import/wide_text.h"
 #include "sequences/pictures/srgb.h"
 
@@ -27,14 +28,9 @@ using layers::dvec3;
 constexpr double kFarAway = 2000;
 constexpr const char* kNoName = "defaultobject";
 
-std::string rest_of_line(const std::string& line, std::size_t from) {
-  const std::size_t first = line.find_first_not_of(" \t", from), last = line.find_last_not_of(" \t\r");
-  return first == std::string::npos || last < first ? std::string() : line.substr(first, last - first + 1);
-}
-
 /// What the geometry's reader does not say, and what only materials need.
 struct ObjWords {
-  std::string libraries;               ///< its lines "mtllib …"
+  std::vector<std::string> libraries;  ///< what is behind each "mtllib"
   std::vector<std::string> materials;  ///< in the order of their first use
   std::map<std::string, int> id_of;    ///< by the first word, as the geometry's reader has it
 };
@@ -54,7 +50,7 @@ ObjWords words_of(const std::string& path) {
     if (at == std::string::npos) continue;
     if (line[at] == 'v') check_numbers(line);
     if (line[at] != 'm' && line[at] != 'u') continue;
-    if (line.compare(at, 6, "mtllib") == 0) words.libraries += "mtllib " + rest_of_line(line, at + 6) + "\n";
+    if (line.compare(at, 6, "mtllib") == 0) words.libraries.push_back(rest_of_line(line, at + 6));
     if (line.compare(at, 6, "usemtl") != 0) continue;
     const std::string name = rest_of_line(line, at + 6);
     const std::string first = name.substr(0, name.find_first_of(" \t"));
@@ -104,7 +100,8 @@ ObjContent content_of(const std::string& path, const ObjWords& words) {
 std::vector<int> materials_of(ImportedModel& model, const ModelPlace& place, const ObjWords& words,
                               bool has_colors, FileUses& files) {
   const std::string color = has_colors ? " 1 1 1\n" : "\n";
-  std::string text = words.libraries + "v 0 0 0" + color + "v 1 0 0" + color + "v 0 1 0" + color;
+  const ObjLibraries libraries(place, words.libraries, files);
+  std::string text = libraries.lines() + "v 0 0 0" + color + "v 1 0 0" + color + "v 0 1 0" + color;
   text += "o m" + std::to_string(words.materials.size()) + "\nf 1 2 3\n";
   for (std::size_t k = 0; k < words.materials.size(); ++k)
     text += "o m" + std::to_string(k) + "\nusemtl " + words.materials[k] + "\nf 1 2 3\n";
@@ -119,7 +116,10 @@ std::vector<int> materials_of(ImportedModel& model, const ModelPlace& place, con
   });
   model.scene.materials = std::move(looks.scene.materials);
   model.scene.textures = std::move(looks.scene.textures);
-  model.warnings = std::move(looks.warnings);
+  model.warnings = libraries.missing();
+  if (const std::string unknown = libraries.unknown(words.materials); !unknown.empty())
+    model.warnings.push_back(unknown);
+  model.warnings.insert(model.warnings.end(), looks.warnings.begin(), looks.warnings.end());
   return numbers;
 }
 

@@ -282,6 +282,20 @@ regulator::LayerCost cost_of(const Pipeline& pipeline, const LayerTable& layers,
   return cost;
 }
 
+namespace {
+
+/// The worst place is the nearest one on the display, where it lies beyond its edge; and if the layer is too far
+/// off because something ran over it, that is named.
+void finish_geometric(const Pipeline& pipeline, const LayerTable& layers, const LayerState& now,
+                      fiducials::Report& report) {
+  report.geometric.where_px =
+      glm::clamp(report.geometric.where_px, layers::dvec2(0), layers::dvec2(now.view.display_px));
+  if (report.shade.px > 0 && report.geometric.px > pipeline.settings.regulator.thresholds.geometric_px)
+    report.shade.what = shade_in_words(pipeline, layers, now, report.shade);
+}
+
+}  // namespace
+
 LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers, const LayerState& then,
                               const SpritePlacement& placement, const LayerState& now,
                               int frames_since_render) {
@@ -306,6 +320,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
     assessment.fiducials.sampling.magnification /= placement.density_kept;
   if (is_blurred(assessment.preferences)) judge_motion_blur(layers, then, now, assessment);
   assess_light_and_faces(pipeline, layers.bound(now.layer), then, now, assessment.fiducials);
+  finish_geometric(pipeline, layers, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));

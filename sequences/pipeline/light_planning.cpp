@@ -2,6 +2,7 @@
 #include "sequences/pipeline/light_planning.h"
 
 #include "fiducials/photometric.h"
+#include "fiducials/shade_drift.h"
 #include "fiducials/turned_faces.h"
 #include "layers/animation.h"
 #include "layers/built_effects.h"
@@ -13,6 +14,12 @@ namespace {
 
 void name(const layers::Scene& scene, fiducials::LightRef& light) {
   if (light.index >= 0) light.name = scene.lights[light.index].name;
+}
+
+/// "light 'key'", "light 2".
+std::string light_in_words(const layers::Scene& scene, int light) {
+  const std::string& name = scene.lights[static_cast<std::size_t>(light)].name;
+  return name.empty() ? "light " + std::to_string(light) : "light '" + name + "'";
 }
 
 }  // namespace
@@ -47,6 +54,23 @@ void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerBound& 
     name(pipeline.scene, report.photometric.angle_light);
   }
   if (bound.follows_faces) report.turned = fiducials::turned_faces_of(then, now, bound.hull);
+}
+
+std::string shade_in_words(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now,
+                           const fiducials::ShadeMotion& motion) {
+  using Kind = layers::ShadeTrace::Kind;
+  if (motion.trace < 0 || static_cast<std::size_t>(motion.trace) >= now.traces.size())
+    return "shades whose places are not known";
+  const layers::ShadeTrace& trace = now.traces[static_cast<std::size_t>(motion.trace)];
+  const std::string kind(fiducials::name(trace.kind));
+  const std::string light = trace.light >= 0 ? light_in_words(pipeline.scene, trace.light) : "";
+  if (trace.kind == Kind::Highlight) return "the highlight of " + light;
+  const layers::Layer& layer = layers[static_cast<std::size_t>(now.layer)];
+  const bool is_own = trace.source == layer.id || (trace.source >= 0 && trace.source == layer.base);
+  const std::string whose =
+      is_own ? "its own " + kind
+             : "the " + kind + " of '" + layers[static_cast<std::size_t>(trace.source)].name + "'";
+  return light.empty() ? whose : whose + " in " + light;
 }
 
 }  // namespace talisman::sequences

@@ -22,4 +22,9 @@ void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerBound& 
                             const layers::LayerState& then, const layers::LayerState& now,
                             fiducials::Report& report);
 
+/// "the shadow of 'rotor' in light 'key'", "its own shadow in light 'key'", "the highlight of light 2", "the
+/// reflection of 'ship'": what has moved most over the layer.
+std::string shade_in_words(const Pipeline& pipeline, const LayerTable& layers, const layers::LayerState& now,
+                           const fiducials::ShadeMotion& motion);
+
 }  // namespace talisman::sequences

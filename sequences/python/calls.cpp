@@ -42,6 +42,9 @@ Call::Call(const std::string& sequence, const std::vector<std::string>& words, b
   const CommandLine line = command_line_from(sequence, words, plan_only);
   sequence_ = load_sequence(line.sequence, content_options(line.content));
   const ResolvedRun resolved = resolve(line, sequence_, plan_only);
+  warnings_ = sequence_.warnings;
+  warnings_.insert(warnings_.end(), resolved.warnings.begin(), resolved.warnings.end());
+  require_none(warnings_, line.content.strict, sequence_.file);
   settings_ = resolved.settings;
   first_frame_ = resolved.options.first_frame;
   last_frame_ = resolved.options.last_frame;

@@ -20,7 +20,7 @@ class Call {
   /// InputError with the message of the tool; words about files and progress are refused.
   Call(const std::string& sequence, const std::vector<std::string>& words, bool plan_only);
 
-  const std::vector<std::string>& warnings() const { return sequence_.warnings; }
+  const std::vector<std::string>& warnings() const { return warnings_; }
 
   /// Called once per frame, also for those before the range; what it throws ends the run.
   using BeforeFrame = std::function<void()>;
@@ -34,6 +34,7 @@ class Call {
 
  private:
   Sequence sequence_;
+  std::vector<std::string> warnings_;
   Settings settings_;
   int first_frame_ = 0, last_frame_ = 0;
   int threads_ = 0;

@@ -111,34 +111,39 @@ DecisionColumns what_is_shown() {
 }
 
 DecisionColumns geometric_columns() {
-  return {computed<Row>("warp_geometric_px", "fiducials/warp_geometric_px", "px",
-                        "error that the old sprite would have with the warp, also when that was rejected",
-                        [](const Row& r) { return fiducials_of(r).geometric.px; }),
-          computed<Row>("held_geometric_px", "fiducials/held_geometric_px", "px",
-                        "error that the old sprite would have where it was, without a warp",
-                        [](const Row& r) { return assessment(r).held_geometric_px; }),
-          computed<Row>("worst_at_x_px", "fiducials/worst_at_px/0", "px",
-                        "where on the display the geometric error is largest",
-                        [](const Row& r) { return fiducials_of(r).geometric.where_px.x; }),
-          computed<Row>("worst_at_y_px", "fiducials/worst_at_px/1", "px", "likewise",
-                        [](const Row& r) { return fiducials_of(r).geometric.where_px.y; }),
-          computed<Row>("magnification", "fiducials/magnification", "",
-                        "most by which the warp stretches a texel; 1 at rest",
-                        [](const Row& r) { return fiducials_of(r).sampling.magnification; }),
-          computed<Row>("minification", "fiducials/minification", "",
-                        "least by which it stretches one; below 1 texels are squeezed",
-                        [](const Row& r) { return fiducials_of(r).sampling.minification; }),
-          computed<Row>("anisotropy", "fiducials/anisotropy", "", "largest ratio of the two at one place",
-                        [](const Row& r) { return fiducials_of(r).sampling.anisotropy; }),
-          computed<Row>("uncovered_px", "fiducials/uncovered_px", "px",
-                        "depth to which a side cut off by the display has come into view; null: not computed",
-                        [](const Row& r) {
-                          const auto& v = fiducials_of(r).visibility;
-                          return if_computed(v, v.uncovered_px);
-                        }),
-          computed<Row>("uncovered_why_not", "fiducials/uncovered_why_not", "",
-                        "why that was not computed; empty if it was",
-                        [](const Row& r) { return std::string_view(fiducials_of(r).visibility.why_not); })};
+  return {
+      computed<Row>(
+          "warp_geometric_px", "fiducials/warp_geometric_px", "px",
+          "error that the old sprite would have with the warp, also when that was rejected; `shade_px` is "
+          "part of it",
+          [](const Row& r) { return fiducials_of(r).geometric.px; }),
+      computed<Row>("held_geometric_px", "fiducials/held_geometric_px", "px",
+                    "error that the old sprite would have where it was, without a warp",
+                    [](const Row& r) { return assessment(r).held_geometric_px; }),
+      computed<Row>(
+          "worst_at_x_px", "fiducials/worst_at_px/0", "px",
+          "where the geometric error is largest; the nearest place on the display where that lies beyond "
+          "its edge",
+          [](const Row& r) { return fiducials_of(r).geometric.where_px.x; }),
+      computed<Row>("worst_at_y_px", "fiducials/worst_at_px/1", "px", "likewise",
+                    [](const Row& r) { return fiducials_of(r).geometric.where_px.y; }),
+      computed<Row>("magnification", "fiducials/magnification", "",
+                    "most by which the warp stretches a texel; 1 at rest",
+                    [](const Row& r) { return fiducials_of(r).sampling.magnification; }),
+      computed<Row>("minification", "fiducials/minification", "",
+                    "least by which it stretches one; below 1 texels are squeezed",
+                    [](const Row& r) { return fiducials_of(r).sampling.minification; }),
+      computed<Row>("anisotropy", "fiducials/anisotropy", "", "largest ratio of the two at one place",
+                    [](const Row& r) { return fiducials_of(r).sampling.anisotropy; }),
+      computed<Row>("uncovered_px", "fiducials/uncovered_px", "px",
+                    "depth to which a side cut off by the display has come into view; null: not computed",
+                    [](const Row& r) {
+                      const auto& v = fiducials_of(r).visibility;
+                      return if_computed(v, v.uncovered_px);
+                    }),
+      computed<Row>("uncovered_why_not", "fiducials/uncovered_why_not", "",
+                    "why that was not computed; empty if it was",
+                    [](const Row& r) { return std::string_view(fiducials_of(r).visibility.why_not); })};
 }
 
 DecisionColumns photometric_columns() {

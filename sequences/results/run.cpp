@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/run.h"
 
+#include <cstdio>
 #include <map>
 #include <memory>
 
@@ -68,6 +69,8 @@ class Runner {
         pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)),
         state_(pipeline_) {
     KeptRun kept = begin_run(options, run_json(sequence, settings, options));
+    if (options.progress != ProgressKind::None && !kept.news.empty())
+      std::fprintf(stderr, "%s\n", kept.news.c_str());
     kept_ = std::move(kept.frames);
     decisions_ = std::make_unique<LineFile>(options.out + "/decisions.jsonl");
     frames_ = std::make_unique<LineFile>(options.out + "/frames.jsonl", lines_of(kept_));

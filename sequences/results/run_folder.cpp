@@ -94,6 +94,22 @@ void remove_old_results(const RunOptions& options, bool pictures_are_ours) {
   }
 }
 
+/// How many frames an earlier run finished, whether it came to its end or not.
+std::size_t frames_written(const std::string& out) { return lines_written(out + "/frames.jsonl").size(); }
+
+/// "replaces the run of 16 frames in DIR; --resume would continue it".
+std::string news_of(const RunOptions& options, const Json& earlier, const Json& run) {
+  const bool is_render = earlier.is_object() && !is_plan(earlier);
+  if (options.resume) return is_render ? "" : "nothing to continue in " + options.out + ": begins anew";
+  const std::size_t frames = earlier.is_object() ? frames_written(options.out) : 0;
+  if (frames == 0) return {};
+  const std::string text = std::string("replaces the ") + (is_render ? "run" : "plan") + " of " +
+                           std::to_string(frames) + (frames == 1 ? " frame" : " frames") + " in " +
+                           options.out;
+  const bool is_same = is_render && !options.plan_only && first_difference(earlier, run).empty();
+  return is_same ? text + "; --resume would continue it" : text;
+}
+
 }  // namespace
 
 std::string frame_path(const RunOptions& options, int frame) {
@@ -112,19 +128,21 @@ KeptRun begin_run(const RunOptions& options, const Json& run) {
   if (!options.force && holds_others_files(options.out, earlier))
     throw InputError("holds files that are not of a run, rule: an empty folder, one of a run, or --force",
                      options.out);
+  KeptRun kept;
+  kept.news = news_of(options, earlier, run);
   create_folder(options.out);
   if (!options.plan_only) create_folder(options.out + "/frames");
   if (options.separate) create_folder(options.out + "/separate");
-  KeptRun kept;
   if (options.resume && is_render) {
     if (!earlier.is_object()) throw InputError("not a run file, must be written by talisman", run_file);
     if (const std::string difference = first_difference(earlier, run); !difference.empty())
       throw InputError(difference, run_file);
     kept = complete_frames(options);
+    if (kept.frames.empty()) kept.news = "no complete frame to continue in " + options.out + ": begins anew";
   }
   for (const char* folder : {"", "/frames", "/separate"}) remove_abandoned_files(options.out + folder);
   if (kept.frames.empty()) {
-    kept = {};
+    kept = {{}, {}, kept.news};
     remove_old_results(options, is_render);
   }
   write_text_atomically(run_file, run.dump(2) + "\n");

@@ -28,6 +28,7 @@ std::string frame_path(const RunOptions& options, int frame);
 struct KeptRun {
   std::map<int, FrameLine> frames;  ///< with their times
   std::vector<std::string> timing;  ///< lines of timing.jsonl: of those frames and of the processes
+  std::string news{};  ///< what became of an earlier run, or of the wish to go on with one; empty: nothing
 };
 
 /// Makes the folders, removes what killed runs left half written, and (unless `resume` asks to go on with what is

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The table that the tool prints at the end of a run.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 #include "sequences/files/number_text.h"
+#include "sequences/files/quoted.h"
 #include "sequences/results/column_tables.h"
 
 namespace talisman::sequences {
@@ -52,9 +55,26 @@ std::string share_row(const char* label, std::int64_t part, std::int64_t whole, 
                    magnitude(b).c_str(), of, percent_of(a, b).c_str());
 }
 
+/// Renders that no row of a member shows, though the mean counts them for it.
+std::string merged_row(const Summary& s) {
+  std::vector<std::string> names;
+  int fewest = std::numeric_limits<int>::max(), most = 0;
+  for (const LayerSummary& layer : s.layers) {
+    if (layer.merged_renders == 0) continue;
+    names.push_back(layer.name);
+    fewest = std::min(fewest, layer.merged_renders);
+    most = std::max(most, layer.merged_renders);
+  }
+  if (names.empty()) return {};
+  const std::string times = fewest == most ? formatted("%d", most) : formatted("%d to %d", fewest, most);
+  return formatted("                    with %s %s in merged sprites of each of %s\n", times.c_str(),
+                   most == 1 ? "render" : "renders", quoted(names).c_str());
+}
+
 std::string work_rows(const Summary& s) {
   std::string text = formatted("  update rate       %.1f %% mean over layers, %.1f %% weighted by polygons\n",
                                100 * s.mean_update_rate(), 100 * s.cost_weighted_update_rate());
+  text += merged_row(s);
   text += share_row("polygons", s.polygons_rendered(),
                     s.total([](const FrameLine& line) { return line.polygons.reference; }), "");
   text += share_row("pixels", s.pixels_rendered(),

@@ -87,6 +87,20 @@ TEST(ShadeMotion, PlaceThatCameIntoBeingCrossesTheReceiver) {
   EXPECT_EQ(shade_motion(receiver({nan, nan, nan}), receiver({nan, nan, nan})).px, 0);
 }
 
+TEST(ShadeMotion, WorstPlaceLiesOnTheDisplayThoughTheReceiverReachesBeyond) {
+  // It appears on a receiver whose bounds reach from the left half of the display far out of it: its seen part is
+  // 500 x 1000 px, and the middle of that is on the display.
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  LayerState then = receiver({nan, nan, nan}), now = receiver({0, 0, 0});
+  now.screen_bounds_px = {{-9500, -2000}, {500, 3000}};
+  const ShadeMotion motion = shade_motion(then, now);
+  EXPECT_NEAR(motion.px, std::hypot(500, 1000), 1e-9);
+  EXPECT_EQ(motion.where_px, dvec2(250, 500));
+  // A path that runs out of the display ends at its edge.
+  const ShadeMotion out = shade_motion(receiver({0, 0, 0}), receiver({1e6, 0, 0}));
+  EXPECT_EQ(out.where_px.x, 1000);
+}
+
 TEST(ShadeMotion, IsAddedToTheGeometricFiducial) {
   const LayerState then = receiver({0, 0, 0}), now = receiver({0.3, 0.4, 0});
   layers::Correspondences matched;

@@ -45,6 +45,22 @@ RegulatorOptions every(Policy policy, int frames) {
   return options;
 }
 
+TEST(Regulate, WhatRanOverALayerIsNamedWithItsShareOfTheError) {
+  LayerAssessment layer = layer_with_error(6.75);
+  layer.fiducials.shade.computed = true;
+  layer.fiducials.shade.px = 6;
+  layer.fiducials.shade.what = "the shadow of 'rotor' in light 'key'";
+  EXPECT_EQ(decide(layer, threshold_of(4)).reason,
+            "geometric 6.75 > 4 px (0.750 of place + 6.000 of the shadow of 'rotor' in light 'key')");
+  layer.fiducials.geometric.px = 6;  // all of it
+  EXPECT_EQ(decide(layer, threshold_of(4)).reason,
+            "geometric 6 > 4 px (of the shadow of 'rotor' in light 'key')");
+  layer.fiducials.shade.what.clear();  // who planned did not know the scene
+  EXPECT_THAT(decide(layer, threshold_of(4)).reason, HasSubstr("of what ran over it"));
+  layer.fiducials.shade.px = 0;
+  EXPECT_EQ(decide(layer, threshold_of(4)).reason, "geometric 6 > 4 px");
+}
+
 TEST(Regulate, NoLayersGiveAnEmptyPlan) { EXPECT_TRUE(regulate(3, {}, {}).decisions.empty()); }
 
 TEST(Regulate, LayerOutOfViewIsDroppedByEveryPolicy) {

@@ -115,7 +115,7 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
   expect_bad_input("render no_such_sequence", {"no_such_sequence"});
   expect_bad_input("render cube.obj --policy often", {"--policy", "often", "threshold"});
   expect_bad_input("render cube.obj --geometric-px -1", {"geometric_px", "-1", "at least 0"});
-  expect_bad_input("render cube.obj --geometric-px nan", {"geometric_px", "at least 0"});
+  expect_bad_input("render cube.obj --geometric-px nan", {"--geometric-px", "nan", "a finite number"});
   expect_bad_input("render cube.obj --warp bend", {"--warp", "bend"});
   expect_bad_input("render cube.obj --size 0x100", {"--size", "0x100"});
   expect_bad_input("render cube.obj --size -5x100", {"--size"});
@@ -127,13 +127,13 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
   expect_bad_input("render cube.obj --policy budget", {"--policy", "--budget-polygons", "--budget-pixels"});
   expect_bad_input("render cube.obj --budget-polygons -5", {"budget_polygons", "-5", "at least 0"});
   expect_bad_input("render cube.obj --budget-chunks -5", {"budget_chunks", "-5", "at least 0"});
-  expect_bad_input("render cube.obj --budget-ms nan", {"budget_ms", "at least 0"});
+  expect_bad_input("render cube.obj --budget-ms nan", {"--budget-ms", "nan", "a finite number"});
   expect_bad_input("render cube.obj --min-resolution 2", {"min_resolution", "2", "at most 1"});
   expect_bad_input("plan cube.obj --budget-gap", {"--budget-gap", "threshold", "must be budget"});
   expect_bad_input("plan cube.obj --predict crystal", {"--predict", "crystal", "known, linear"});
   expect_bad_input("plan cube.obj --predict linear --policy oracle",
                    {"--predict", "oracle", "must be lookahead"});
-  expect_bad_input("render cube.obj --cutoff-px nan", {"cutoff_px", "at least 0"});
+  expect_bad_input("render cube.obj --cutoff-px nan", {"--cutoff-px", "nan", "a finite number"});
   expect_bad_input("render cube.obj --format gif", {"--format", "gif", "png"});
   expect_bad_input("render cube.obj --format none --video", {"--video"});
   expect_bad_input("render cube.obj --threads -1", {"--threads"});
@@ -290,9 +290,9 @@ TEST_F(Tool, MisspeltCommandsAndOptionsAreAnsweredWithWhatIsNear) {
   expect_bad_input("rendr cube.obj", {"'rendr' is no command; did you mean 'render'?"});
   expect_bad_input("frobnicate", {"'frobnicate' is no command; must be one of render, plan, audit, inspect"});
   expect_bad_input("plan cube.obj --geometrc-px 3", {"--geometrc-px", "did you mean '--geometric-px'?"});
-  expect_bad_input("plan cube.obj --szie=64x48", {"--szie=64x48", "did you mean '--size'?"});
+  expect_bad_input("plan cube.obj --szie=64x48", {"'--szie' is no option of plan; did you mean '--size'?"});
   expect_bad_input("--versoin", {"'--versoin' is no option; did you mean '--version'?"});
-  expect_bad_input("plan cube.obj --xyzzy", {"not expected: --xyzzy\n"});
+  expect_bad_input("plan cube.obj --xyzzy", {"'--xyzzy' is no option of plan; --help lists them\n"});
   expect_bad_input("plan", {"sequence is required"});
 }
 

@@ -109,5 +109,43 @@ TEST(ReadObj, LinesBesideFacesAreSaid) {
               ElementsAre("lines are not drawn"));
 }
 
+constexpr const char* kFace = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST(ReadObj, LibraryWithSpacesInItsNameIsOneLibrary) {
+  const TemporaryFolder folder;
+  folder.write("my look.mtl", "newmtl red\nKd 1 0 0\n");
+  const ImportedModel model = import_model(
+      folder.write("thing.obj", "mtllib my look.mtl\n" + std::string(kFace) + "usemtl red\nf 1 2 3\n"));
+  EXPECT_THAT(model.warnings, ElementsAre());
+  EXPECT_EQ(model.scene.materials.at(model.scene.parts.at(0).material).base_color, layers::vec3(1, 0, 0));
+}
+
+TEST(ReadObj, SeveralLibrariesInOneLineAreAllRead) {
+  const TemporaryFolder folder;
+  folder.write("a.mtl", "newmtl red\nKd 1 0 0\n");
+  folder.write("b.mtl", "newmtl blue\nKd 0 0 1\n");
+  const ImportedModel model = import_model(folder.write(
+      "thing.obj", "mtllib a.mtl b.mtl gone.mtl\n" + std::string(kFace) + "usemtl blue\nf 1 2 3\n"));
+  EXPECT_THAT(model.warnings, ElementsAre("material library 'gone.mtl' is missing"));
+  EXPECT_EQ(model.scene.materials.at(model.scene.parts.at(0).material).base_color, layers::vec3(0, 0, 1));
+}
+
+TEST(ReadObj, LibraryOfTheModelsNameStandsInAndIsNamed) {
+  const TemporaryFolder folder;
+  folder.write("thing.mtl", "newmtl red\nKd 1 0 0\n");
+  const ImportedModel model = import_model(
+      folder.write("thing.obj", "mtllib gone.mtl\n" + std::string(kFace) + "usemtl red\nf 1 2 3\n"));
+  EXPECT_THAT(model.warnings,
+              ElementsAre(testing::AllOf(HasSubstr("'gone.mtl' is missing"), HasSubstr("'thing.mtl'"))));
+  EXPECT_EQ(model.scene.materials.at(model.scene.parts.at(0).material).base_color, layers::vec3(1, 0, 0));
+}
+
+TEST(ReadObj, ManyMaterialsOfNoLibraryAreOneLine) {
+  std::string text = kFace;
+  for (int k = 0; k < 8; ++k) text += "usemtl m" + std::to_string(k) + "\nf 1 2 3\n";
+  EXPECT_THAT(read_obj_text(text).warnings,
+              ElementsAre("materials 'm0', 'm1', 'm2', 'm3', 'm4' and 3 more are in no library"));
+}
+
 }  // namespace
 }  // namespace talisman::sequences

@@ -180,6 +180,25 @@ class Plan(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "--policy"):
             talisman.plan("--policy")
 
+    def test_names_of_options_are_those_of_python(self):
+        with self.assertRaisesRegex(ValueError, "^there is no option 'policyy'; did you mean 'policy'\\?$"):
+            talisman.plan("carousel", policyy="budget")
+        with self.assertRaisesRegex(ValueError, "^there is no option 'geometrc_px'; did you mean 'geometric_px'\\?$"):
+            talisman.render("carousel", geometrc_px=2)
+        with self.assertRaisesRegex(ValueError, "^there is no option 'xyzzy'$"):
+            talisman.plan("carousel", xyzzy=2)
+
+    def test_numbers_are_finite(self):
+        for value in (float("inf"), float("-inf"), float("nan"), np.float64("inf"), "1e400"):
+            with self.assertRaisesRegex(ValueError, "geometric-px.*a finite number"):
+                talisman.plan("carousel", geometric_px=value)
+
+    def test_warnings_are_errors_where_that_is_asked_for(self):
+        with self.assertWarnsRegex(UserWarning, "--hold has no effect with policy threshold"):
+            talisman.plan("carousel", frames="0", policy="threshold", hold=2)
+        with self.assertRaisesRegex(ValueError, "1 warning, rule with --strict: none"):
+            talisman.plan("carousel", frames="0", policy="threshold", hold=2, strict=True)
+
     def test_a_broken_file_is_told_by_file_and_line(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
             file.write("name: x\nframes: -3\n")

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/commands/ineffective.h"
+
+#include <algorithm>
+
+#include "sequences/content/value_type.h"
+
+namespace talisman::sequences {
+namespace {
+
+using regulator::Policy;
+
+struct Group {
+  std::vector<Policy> readers;
+  std::vector<std::string> given;
+};
+
+class Given {
+ public:
+  explicit Given(std::vector<std::string>& names) : names_(names) {}
+  template <typename T>
+  Given& operator()(const char* name, const std::optional<T>& value) {
+    return add(name, value.has_value());
+  }
+  Given& operator()(const char* name, const std::string& value) { return add(name, !value.empty()); }
+
+ private:
+  Given& add(const char* name, bool is_given) {
+    if (is_given) names_.emplace_back(name);
+    return *this;
+  }
+  std::vector<std::string>& names_;
+};
+
+std::vector<Group> groups_of(const CommandLine& line) {
+  using enum Policy;
+  std::vector<Group> groups = {{{Hold, Interpolate}, {}},
+                               {{Lookahead}, {}},
+                               {{Budget}, {}},
+                               {{Threshold, Lookahead, Oracle}, {}},
+                               {{Threshold}, {}},
+                               // Budget adds these to the benefit; interpolate follows the light by them.
+                               {{Interpolate, Threshold, Budget, Lookahead, Oracle}, {}}};
+  Given(groups[0].given)("--hold", line.hold);
+  Given(groups[1].given)("--lookahead", line.lookahead)("--predict", line.predict);
+  Given(groups[2].given)("--budget-polygons", line.budget_polygons)("--budget-pixels", line.budget_pixels)(
+      "--budget-chunks", line.budget_chunks)("--budget-ms", line.budget_ms)(
+      "--min-resolution", line.min_resolution)("--cutoff-px", line.cutoff_px)("--choice", line.choice)(
+      "--depth-complexity", line.depth_complexity);
+  Given(groups[3].given)("--geometric-px", line.geometric_px);
+  Given(groups[4].given)("--shadow-map-px", line.shadow_map_px);
+  Given(groups[5].given)("--photometric", line.photometric)("--light-angle-deg", line.light_angle_deg)(
+      "--turned-px", line.turned_px)("--color-warp", line.color_warp);
+  return groups;
+}
+
+}  // namespace
+
+std::vector<std::string> without_effect(const CommandLine& line, Policy policy) {
+  std::vector<std::string> warnings;
+  for (const Group& group : groups_of(line)) {
+    if (group.given.empty() ||
+        std::find(group.readers.begin(), group.readers.end(), policy) != group.readers.end())
+      continue;
+    std::vector<std::string> readers;
+    for (const Policy reader : group.readers) readers.emplace_back(regulator::name(reader));
+    const bool is_one = group.given.size() == 1;
+    warnings.push_back(listed(group.given, "and") + (is_one ? " has" : " have") + " no effect with policy " +
+                       std::string(regulator::name(policy)) + "; " +
+                       (readers.size() == 1 ? "policy " : "the policies ") + listed(readers, "and") +
+                       (readers.size() == 1 ? " reads " : " read ") + (is_one ? "it" : "them"));
+  }
+  return warnings;
+}
+
+}  // namespace talisman::sequences
