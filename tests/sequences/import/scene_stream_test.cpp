@@ -134,7 +134,7 @@ TEST(SceneStream, BytesTooManyAreRefused) {
 TEST(SceneStream, ForeignBytesAndOtherVersionsAreRefused) {
   auto bytes = bytes_from_scene({});
   bytes[4] ^= 1;
-  EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("version 5, rule: 4"));
+  EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("version 4, rule: 5"));
   bytes[0] ^= 1;
   EXPECT_THAT(message_of([&] { scene_from_bytes(bytes); }), HasSubstr("magic"));
 }
