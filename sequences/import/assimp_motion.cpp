@@ -246,7 +246,10 @@ void import_cameras(Import& import) {
     camera.fov_y_rad = fov_y(*from);
     const double scale = scale_below(import.model.scene, camera.node);
     const double near_m = scale * from->mClipPlaneNear, far_m = scale * from->mClipPlaneFar;
-    if (near_m > 0 && far_m > near_m && std::isfinite(far_m)) camera.near_m = near_m, camera.far_m = far_m;
+    const bool says_nothing =
+        from->mClipPlaneNear == 0.1f && from->mClipPlaneFar == 1000.0f;  // assimp's defaults
+    if (!says_nothing && near_m > 0 && far_m > near_m && std::isfinite(far_m))
+      camera.near_m = near_m, camera.far_m = far_m;
     import.model.scene.cameras.push_back(camera);
   }
 }

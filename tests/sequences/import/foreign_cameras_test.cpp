@@ -144,8 +144,8 @@ source="#p"/></vertices><triangles count="1" material="paint"><input semantic="V
 TEST(ColladaCamera, PlanesAreInTheUnitsOfTheFile) {
   const TemporaryFolder folder;
   Collada file;
-  file.libraries = R"(<library_cameras><camera id="c"><optics><technique_common><perspective><yfov>40</yfov>
-<znear>10</znear><zfar>1000</zfar></perspective></technique_common></optics></camera></library_cameras>)";
+  file.libraries =
+      R"(<library_cameras><camera id="c"><optics><technique_common><perspective><xfov>40</xfov><yfov>40</yfov><znear>10</znear><zfar>1000</zfar></perspective></technique_common></optics></camera></library_cameras>)";
   file.nodes = R"(<node id="eye" name="eye"><translate>0 0 50</translate><instance_camera url="#c"/></node>)";
   const layers::CameraState camera = import_model(folder.write("eye.dae", file.text())).scene.at(0).camera;
   expect_near(camera.world_from_camera[3], {0, 0, 0.5});
@@ -193,7 +193,7 @@ TEST(ColladaTransparency, IsTurnedOverWhereNothingWouldBeOpaque) {
 TEST(ForeignText, ColladaIn16BitsIsReadWithItsNames) {
   const TemporaryFolder folder;
   std::string text = Collada().text(), wide = "\xFF\xFE";
-  text.replace(text.find("name=\"n\""), 8, "name=\"@\"");
+  text.replace(text.find("id=\"n\""), 6, "id=\"@\"");
   for (const char c : text) wide += c == '@' ? std::string("\xE9\0", 2) : std::string{c, '\0'};  // é
   const ImportedModel model = import_model(folder.write("wide.dae", wide));
   ASSERT_EQ(model.scene.parts.size(), 1u);
