@@ -282,7 +282,8 @@ std::string spot_with(const std::string& more) {
 
 TEST(LoadLights, WhatIsWrongIsRefusedWithItsLine) {
   expect_refused({
-      {7, spot_with("inner_deg: 30, outer_deg: 20"), "lights[0] is a map, rule: inner_deg at most outer_deg"},
+      {7, spot_with("inner_deg: 30, outer_deg: 20"),
+       "lights[0] has inner_deg '30' and outer_deg '20', rule: inner_deg at most outer_deg"},
       {7, spot_with("inner_deg: 31"), "rule: inner_deg at most outer_deg"},  // the outer one is 30 by default
       {7, spot_with("outer_deg: 91"), "lights[0].outer_deg is '91', rule: a number from 0 to 90"},
       {7, spot_with("inner_deg: -1"), "lights[0].inner_deg is '-1'"},
