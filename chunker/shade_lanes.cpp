@@ -212,20 +212,20 @@ HWY_INLINE void interpolate(const Shader& shader, const Interpolator& t, ShadeBl
   }
 }
 
-void Interpolate(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+void interpolate_lanes(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   interpolate<Footprint::None>(shader, t, block);
 }
-void InterpolateBilinear([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
-                         [[maybe_unused]] ShadeBlock& block) {
+void interpolate_bilinear_lanes([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                                [[maybe_unused]] ShadeBlock& block) {
   if constexpr (layers::is_built(layers::Effect::Texture)) interpolate<Footprint::Finest>(shader, t, block);
 }
-void InterpolateTrilinear([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
-                          [[maybe_unused]] ShadeBlock& block) {
+void interpolate_trilinear_lanes([[maybe_unused]] const Shader& shader,
+                                 [[maybe_unused]] const Interpolator& t, [[maybe_unused]] ShadeBlock& block) {
   if constexpr (layers::is_built(layers::Effect::Texture)) interpolate<Footprint::Level>(shader, t, block);
 }
 
-void InterpolateWrapped([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
-                        [[maybe_unused]] ShadeBlock& block) {
+void interpolate_wrapped_lanes([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                               [[maybe_unused]] ShadeBlock& block) {
   if constexpr (layers::is_built(layers::Effect::Texture)) {
     if (shader.mipmaps)
       interpolate<Footprint::Level, true>(shader, t, block);
@@ -363,21 +363,21 @@ HWY_INLINE void light_points(const Shader& shader, const Interpolator& t, ShadeB
   }
 }
 
-void LightPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+void light_points_lanes(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   light_points<false, false>(shader, t, block);
 }
-void LightShinyPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+void light_shiny_points_lanes(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   light_points<false, true>(shader, t, block);
 }
-void LightShadowedPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+void light_shadowed_points_lanes(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   light_points<true, false>(shader, t, block);
 }
-void LightShadowedShinyPoints(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
+void light_shadowed_shiny_points_lanes(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   light_points<true, true>(shader, t, block);
 }
 
-void LightMappedPoints([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
-                       [[maybe_unused]] ShadeBlock& block) {
+void light_mapped_points_lanes([[maybe_unused]] const Shader& shader, [[maybe_unused]] const Interpolator& t,
+                               [[maybe_unused]] ShadeBlock& block) {
   if constexpr (layers::is_built(layers::Effect::NormalMap)) {
     if (shader.shadowed && shader.has_specular)
       light_points<true, true, true>(shader, t, block);
@@ -396,39 +396,39 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace talisman::chunker {
 
-HWY_EXPORT(Interpolate);
-HWY_EXPORT(InterpolateBilinear);
-HWY_EXPORT(InterpolateTrilinear);
-HWY_EXPORT(InterpolateWrapped);
-HWY_EXPORT(LightPoints);
-HWY_EXPORT(LightShinyPoints);
-HWY_EXPORT(LightShadowedPoints);
-HWY_EXPORT(LightShadowedShinyPoints);
-HWY_EXPORT(LightMappedPoints);
+HWY_EXPORT(interpolate_lanes);
+HWY_EXPORT(interpolate_bilinear_lanes);
+HWY_EXPORT(interpolate_trilinear_lanes);
+HWY_EXPORT(interpolate_wrapped_lanes);
+HWY_EXPORT(light_points_lanes);
+HWY_EXPORT(light_shiny_points_lanes);
+HWY_EXPORT(light_shadowed_points_lanes);
+HWY_EXPORT(light_shadowed_shiny_points_lanes);
+HWY_EXPORT(light_mapped_points_lanes);
 
 void interpolate_block(const Shader& shader, const Interpolator& t, Texels texels, ShadeBlock& block) {
   const bool fetched = texels == Texels::Trilinear || texels == Texels::Bilinear;
   if (fetched && shader.pyramid->wraps())
-    HWY_DYNAMIC_DISPATCH(InterpolateWrapped)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(interpolate_wrapped_lanes)(shader, t, block);
   else if (texels == Texels::Trilinear)
-    HWY_DYNAMIC_DISPATCH(InterpolateTrilinear)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(interpolate_trilinear_lanes)(shader, t, block);
   else if (texels == Texels::Bilinear)
-    HWY_DYNAMIC_DISPATCH(InterpolateBilinear)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(interpolate_bilinear_lanes)(shader, t, block);
   else
-    HWY_DYNAMIC_DISPATCH(Interpolate)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(interpolate_lanes)(shader, t, block);
 }
 
 void light_block(const Shader& shader, const Interpolator& t, ShadeBlock& block) {
   if (shader.normal_map != nullptr)
-    HWY_DYNAMIC_DISPATCH(LightMappedPoints)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(light_mapped_points_lanes)(shader, t, block);
   else if (shader.shadowed && shader.has_specular)
-    HWY_DYNAMIC_DISPATCH(LightShadowedShinyPoints)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(light_shadowed_shiny_points_lanes)(shader, t, block);
   else if (shader.shadowed)
-    HWY_DYNAMIC_DISPATCH(LightShadowedPoints)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(light_shadowed_points_lanes)(shader, t, block);
   else if (shader.has_specular)
-    HWY_DYNAMIC_DISPATCH(LightShinyPoints)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(light_shiny_points_lanes)(shader, t, block);
   else
-    HWY_DYNAMIC_DISPATCH(LightPoints)(shader, t, block);
+    HWY_DYNAMIC_DISPATCH(light_points_lanes)(shader, t, block);
 }
 
 }  // namespace talisman::chunker

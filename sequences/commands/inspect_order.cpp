@@ -25,6 +25,7 @@ constexpr std::span kCounters = std::span(kVisibilityFields).subspan(1);
 
 std::vector<std::string> names_of(const LayerTable& layers, const std::vector<int>& ids) {
   std::vector<std::string> names;
+  names.reserve(ids.size());
   for (const int id : ids) names.push_back(layers[id].name);
   return names;
 }

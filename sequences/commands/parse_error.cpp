@@ -73,7 +73,7 @@ std::string explained(const CLI::App& app, const CLI::ParseError& error) {
   if (parsed.empty() && !unknown.empty())
     return is_option(unknown.front()) ? unknown_word(name_of(unknown.front()), "option", options_of(app))
                                       : unknown_word(unknown.front(), "command", commands_of(app));
-  if (const std::string what = parsed.empty() ? "" : unexpected(*parsed.front(), unknown); !what.empty())
+  if (std::string what = parsed.empty() ? "" : unexpected(*parsed.front(), unknown); !what.empty())
     return what;
   return error.what();
 }

@@ -119,7 +119,7 @@ SceneFrame scene_at(const Pipeline& pipeline, int frame) {
 }
 
 SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame) {
-  const SceneFrame now = scene_at(pipeline, known);
+  SceneFrame now = scene_at(pipeline, known);
   if (known == frame) return now;
   return layers::predict_linear(known > 0 ? scene_at(pipeline, known - 1) : now, now, frame - known);
 }
