@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/check.h"
+#include "layers/vectors.h"
 
 namespace talisman::layers {
 namespace {
@@ -44,13 +45,9 @@ CoordinateEdges edges_of(const Mesh& mesh, const Corners& corner) {
   return {dvec2(uv[corner[1]]) - origin, dvec2(uv[corner[2]]) - origin};
 }
 
-/// Zero where it has no direction.
-dvec3 unit_vector(const dvec3& v) {
-  const double length = glm::length(v);
-  return length > 0 && std::isfinite(length) ? v / length : dvec3(0.0);
+dvec3 in_plane(const dvec3& v, const dvec3& normal) {
+  return direction_or_zero(v - glm::dot(v, normal) * normal);
 }
-
-dvec3 in_plane(const dvec3& v, const dvec3& normal) { return unit_vector(v - glm::dot(v, normal) * normal); }
 
 /// Numbers that are the same for vertices of the same place, normal and coordinates.
 std::vector<int> groups_of(const Mesh& mesh) {
@@ -105,7 +102,9 @@ std::vector<int> split_by_sign(Mesh& mesh, std::vector<int>& groups) {
 struct WeightedSum {
   dvec3 sum{0, 0, 0};
   double weight = 0;
-  dvec3 direction() const { return glm::length(sum) > kOpposed * weight ? unit_vector(sum) : dvec3(0.0); }
+  dvec3 direction() const {
+    return glm::length(sum) > kOpposed * weight ? direction_or_zero(sum) : dvec3(0.0);
+  }
 };
 
 /// Of each group, by sign: 1, then -1.
@@ -179,7 +178,7 @@ int derive_tangents(Mesh& mesh) {
   }
   for (MorphTarget& morph : mesh.morphs) {
     std::vector<dvec3> turned = moved(mesh.normals, morph.normals);
-    for (dvec3& normal : turned) normal = unit_vector(normal);
+    for (dvec3& normal : turned) normal = direction_or_zero(normal);
     const std::vector<dvec3> tangents =
         tangents_at(mesh, moved(mesh.positions, morph.positions), turned, groups, signs);
     for (std::size_t i = 0; i < tangents.size(); ++i)
@@ -202,7 +201,7 @@ void make_flat_normals(Mesh& mesh) {
   for (std::size_t i = 0; i < mesh.indices.size(); ++i) mesh.indices[i] = static_cast<std::uint32_t>(i);
   for (std::size_t i = 0; i + 2 < mesh.positions.size(); i += 3) {
     const dvec3 a(mesh.positions[i]), b(mesh.positions[i + 1]), c(mesh.positions[i + 2]);
-    const vec3 normal(unit_vector(glm::cross(b - a, c - a)));
+    const vec3 normal(direction_or_zero(glm::cross(b - a, c - a)));
     mesh.normals.insert(mesh.normals.end(), 3, normal);
   }
 }

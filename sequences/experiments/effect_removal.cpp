@@ -152,11 +152,12 @@ layers::Mesh posed_mesh(const layers::SceneFrame& frame, const layers::Part& par
   for (std::size_t i = 0; i < world.size(); ++i)
     mesh.positions[i] = vec3(node_from_world * dvec4(world[i], 1));
   std::vector<dmat3> turned_by;
-  for (const dmat4& joint : layers::joint_palette(frame, part))
+  const std::vector<dmat4> joints = layers::joint_palette(frame, part);
+  for (const dmat4& joint : joints)
     turned_by.push_back(glm::transpose(glm::inverse(dmat3(node_from_world * joint))));
   for (std::size_t i = 0; i < mesh.normals.size(); ++i)
     mesh.normals[i] = vec3(posed_normal(mesh, i, turned_by));
-  pose_tangents(node_from_world, layers::joint_palette(frame, part), mesh);
+  pose_tangents(node_from_world, joints, mesh);
   mesh.joints.clear();
   mesh.weights.clear();
   return mesh;

@@ -8,6 +8,7 @@
 
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/limits.h"
+#include "sequences/import/lower_case.h"
 #include "sequences/import/pbr_surface.h"
 #include "sequences/import/picture_kind.h"
 #include "sequences/import/texture_io.h"
@@ -151,8 +152,8 @@ void whiten_default(Import& import) {
 }
 
 bool is_collada(const std::string& path) {
-  const std::string extension = std::filesystem::path(path).extension().string();
-  return extension.size() == 4 && std::string(".dae.DAE.zae.ZAE").find(extension) % 4 == 0;
+  const std::string extension = lower_extension(path);
+  return extension == ".dae" || extension == ".zae";
 }
 
 /// Some exporters of COLLADA write how transparent a material is, where the format asks how opaque: in their files

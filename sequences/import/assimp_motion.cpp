@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/exposure.h"
 #include "sequences/import/limits.h"
+#include "sequences/import/lower_case.h"
 #include "sequences/import/studio_cameras.h"
 
 namespace talisman::sequences {
@@ -160,11 +160,7 @@ double fov_y(const aiCamera& from) {
   return std::isfinite(fov) && fov > 0.01 && fov < 3 ? fov : kDefaultFov_rad;
 }
 
-bool is_studio(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".3ds";
-}
+bool is_studio(const std::string& path) { return lower_extension(path) == ".3ds"; }
 
 bool is_moved(const Import& import, const std::string& node) {
   for (const layers::Track& track : import.model.scene.tracks) {

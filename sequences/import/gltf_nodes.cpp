@@ -9,6 +9,7 @@
 #include "layers/layer.h"
 #include "sequences/import/gltf_scene.h"
 #include "sequences/import/limits.h"
+#include "sequences/import/lower_case.h"
 
 namespace talisman::sequences {
 
@@ -263,8 +264,7 @@ void import_gltf_nodes(GltfImport& import) {
 }
 
 bool is_gltf2(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  const std::string extension = lower_extension(path);
   if (extension != ".gltf" && extension != ".glb" && extension != ".vrm") return false;
   return !is_gltf1(path);
 }

@@ -14,6 +14,7 @@
 #include <tiny_obj_loader.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/lower_case.h"
 #include "sequences/import/obj_libraries.h"
 #include "sequences/import/wide_text.h"
 #include "sequences/pictures/srgb.h"
@@ -325,11 +326,7 @@ void warn_of_losses(const ObjContent& content, ImportedModel& model) {
 
 }  // namespace
 
-bool is_obj(const std::string& path) {
-  std::string extension = std::filesystem::path(path).extension().string();
-  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return extension == ".obj";
-}
+bool is_obj(const std::string& path) { return lower_extension(path) == ".obj"; }
 
 ImportedModel read_obj(const ModelPlace& place) {
   FileUses files;

@@ -7,6 +7,8 @@
 #include <functional>
 #include <vector>
 
+#include "sequences/import/lower_case.h"
+
 namespace talisman::sequences {
 
 namespace {
@@ -19,13 +21,8 @@ constexpr std::array kPictures = {".png", ".jpg", ".jpeg", ".tga", ".bmp", ".gif
                                   ".ppm", ".pgm", ".pbm",  ".pnm", ".rgb", ".sgi", ".rgba", ".bw",   ".dds",
                                   ".psd", ".hdr", ".exr",  ".ico", ".pic", ".iff", ".jp2",  ".jpe",  ".pcx"};
 
-std::string lower(std::string s) {
-  for (char& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return s;
-}
-
 bool is_picture(const fs::path& path) {
-  const std::string extension = lower(path.extension().string());
+  const std::string extension = lower_extension(path);
   return std::find(kPictures.begin(), kPictures.end(), extension) != kPictures.end();
 }
 

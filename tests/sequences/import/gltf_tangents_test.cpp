@@ -43,6 +43,13 @@ void set_tangents(Gltf& file, const vec4& t) {
   file.primitive()["attributes"]["TANGENT"] = file.add<float>(values, 5126, "VEC4");
 }
 
+/// There is none, and this is why.
+void expect_no_map(Gltf& file, const std::string& warning) {
+  const ImportedModel model = file.import();
+  EXPECT_THAT(model.warnings, ElementsAre(warning));
+  EXPECT_THAT(model.scene.meshes[0].tangents, IsEmpty());
+}
+
 TEST(GltfTangents, AreMadeFromCoordinatesWhereTheFileHasNone) {
   const ImportedModel model = bumpy().import();
   EXPECT_THAT(model.warnings, IsEmpty());
@@ -85,18 +92,13 @@ TEST(GltfTangents, NoCoordinatesNoMapAndItIsSaid) {
   Gltf file = bumpy();
   file.primitive()["attributes"].erase("TEXCOORD_0");
   set_tangents(file, {1, 0, 0, 1});
-  const ImportedModel model = file.import();
-  EXPECT_THAT(model.warnings, ElementsAre("normal maps without texture coordinates are not drawn: 'sheet'"));
-  EXPECT_THAT(model.scene.meshes[0].tangents, IsEmpty());
+  expect_no_map(file, "normal maps without texture coordinates are not drawn: 'sheet'");
 }
 
 TEST(GltfTangents, CoordinatesWithoutAreaNoMapAndItIsSaid) {
   Gltf file = bumpy();
   file.primitive()["attributes"]["TEXCOORD_0"] = file.add<float>({0, 0, 1, 1, 2, 2, 3, 3}, 5126, "VEC2");
-  const ImportedModel model = file.import();
-  EXPECT_THAT(model.warnings,
-              ElementsAre("normal maps are not drawn where texture coordinates have no area: 'sheet'"));
-  EXPECT_THAT(model.scene.meshes[0].tangents, IsEmpty());
+  expect_no_map(file, "normal maps are not drawn where texture coordinates have no area: 'sheet'");
 }
 
 TEST(GltfTangents, ShapesThatMorphWithoutNormalsHaveNoMapAndItIsSaid) {
@@ -109,10 +111,7 @@ TEST(GltfTangents, ShapesThatMorphWithoutNormalsHaveNoMapAndItIsSaid) {
   file.json["animations"] = Json::array(
       {{{"samplers", Json::array({{{"input", times}, {"output", weights}}})},
         {"channels", Json::array({{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}})}}});
-  const ImportedModel model = file.import();
-  EXPECT_THAT(model.warnings,
-              ElementsAre("normal maps of shapes that morph and have no normals are not drawn: 'sheet'"));
-  EXPECT_THAT(model.scene.meshes[0].tangents, IsEmpty());
+  expect_no_map(file, "normal maps of shapes that morph and have no normals are not drawn: 'sheet'");
 }
 
 TEST(GltfTangents, WithoutNormalsEachTriangleHasItsOwn) {
