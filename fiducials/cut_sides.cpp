@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
 
@@ -98,15 +99,19 @@ Visibility visibility_of(const LayerState& then, const LayerState& now, const Sp
                          const Warp& warp) {
   if (placement.empty()) return no_cut_sides("nothing was drawn");
   if (!placement.clipped.any()) return no_cut_sides("no side of the sprite was cut off");
-  const Visible visible_then = visible_part(then), visible_now = visible_part(now);
+  const Visible visible_now = visible_part(now);
+  std::optional<Visible> visible_then;  // asked for only where something is beyond a side now
   if (visible_now.outline.empty()) return no_cut_sides("the layer is out of view");
   Visibility result;
   result.computed = true;
   result.where_px = visible_now.centre();
   for (const Side& side : cut_sides(placement)) {
     const Depth deepest = depth_now(side, warp, visible_now);
-    const double gained = deepest.px - depth_beyond(side, visible_then).px;
-    if (gained > std::fmax(result.uncovered_px, kRoundingPx)) {
+    const double most = std::fmax(result.uncovered_px, kRoundingPx);
+    if (deepest.px <= most) continue;
+    if (!visible_then) visible_then = visible_part(then);
+    const double gained = deepest.px - depth_beyond(side, *visible_then).px;
+    if (gained > most) {
       result.uncovered_px = gained;
       result.where_px = deepest.where_px;
     }

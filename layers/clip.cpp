@@ -182,7 +182,10 @@ void clip_polygons(std::span<const std::array<int, 3>> triangles, std::span<cons
     if (a & b & c) continue;
     polygon.count = 0;
     for (const int i : triangle) polygon.push({{clip_0[i], clip_1[i]}, i});
-    clip_to_crossed(half_spaces, a | b | c, polygon, spare, visit);
+    if ((a | b | c) == 0)
+      visit({polygon.vertices.data(), triangle.size()});
+    else
+      clip_to_crossed(half_spaces, a | b | c, polygon, spare, visit);
   }
 }
 

@@ -4,16 +4,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
+#include "layers/state.h"
+
 namespace talisman::layers {
 namespace {
 
 /// The ratio of depths of one material point: now over then.
 double depth_ratio(const MaterialPoint& p) { return p.clip[1].w / p.clip[0].w; }
 
-double apart_px(const MaterialPoint& a, const MaterialPoint& b, dvec2 display_px) {
-  const dvec2 from = dvec2(a.clip[1]) / a.clip[1].w, to = dvec2(b.clip[1]) / b.clip[1].w;
-  const dvec2 path = (to - from) * display_px / 2.0;
-  return std::hypot(path.x, path.y);
+double apart_px(const MaterialPoint& a, const MaterialPoint& b, ivec2 display_px) {
+  return glm::distance(screen_from_clip(a.clip[1], display_px), screen_from_clip(b.clip[1], display_px));
 }
 
 /// The material point that was at this share of the edge on the display then.
@@ -34,7 +36,7 @@ void add_once(const BowedPlace& candidate, std::vector<BowedPlace>& places) {
 }
 
 /// Every place between two corners of the polygon that bows enough.
-void add_places(std::span<const MaterialPoint> polygon, dvec2 display_px, std::vector<BowedPlace>& places) {
+void add_places(std::span<const MaterialPoint> polygon, ivec2 display_px, std::vector<BowedPlace>& places) {
   for (std::size_t i = 0; i < polygon.size(); ++i)
     for (std::size_t j = i + 1; j < polygon.size(); ++j) {
       const MaterialPoint &a = polygon[i], &b = polygon[j];
@@ -59,9 +61,8 @@ std::vector<MaterialPoint> bowed_places(std::span<const std::array<int, 3>> tria
                                         std::span<const dvec4> clip_then, std::span<const dvec4> clip_now,
                                         std::span<const HalfSpace> half_spaces, ivec2 display_px) {
   std::vector<BowedPlace> places;
-  clip_polygons(triangles, clip_then, clip_now, half_spaces, [&](std::span<const MaterialPoint> polygon) {
-    add_places(polygon, dvec2(display_px), places);
-  });
+  clip_polygons(triangles, clip_then, clip_now, half_spaces,
+                [&](std::span<const MaterialPoint> polygon) { add_places(polygon, display_px, places); });
   std::stable_sort(places.begin(), places.end(),
                    [](const BowedPlace& a, const BowedPlace& b) { return a.bow_px > b.bow_px; });
   std::vector<MaterialPoint> points;

@@ -320,7 +320,6 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
     assessment.fiducials.sampling.magnification /= placement.density_kept;
   if (is_blurred(assessment.preferences)) judge_motion_blur(layers, then, now, assessment);
   assess_light_and_faces(pipeline, layers.bound(now.layer), then, now, assessment.fiducials);
-  finish_geometric(pipeline, layers, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));
@@ -352,6 +351,7 @@ LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int
   if ((now.touches_display || is_held) && memory.then)
     assessment = assess_sprite(pipeline, state.layers, *memory.then, memory.placement, now,
                                std::abs(frame - memory.frame_rendered));
+  finish_geometric(pipeline, state.layers, now, assessment.fiducials);
   if (memory.then) assessment.frames_since_render = std::abs(frame - memory.frame_rendered);
   assessment.layer = layer.id;
   assessment.frames_short_of_area = memory.frames_short_of_area;
