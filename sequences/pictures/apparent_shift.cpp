@@ -182,28 +182,22 @@ void shorten(double longest, cv::Mat2f& shift) {
 /// Beside the displacement that was found: of a structure finer than the window no one displacement is right.
 constexpr double kBeside_px = 1;
 
-/// ‖shown at x + d - fresh at x‖² of the colours, and what is shown there.
-struct Rest {
-  cv::Mat1f squares, shown_alpha;
-};
-
-Rest rest_of(const cv::Mat4f& shown, const cv::Mat4f& fresh) {
-  Rest rest{cv::Mat1f(fresh.size()), cv::Mat1f(fresh.size())};
-  for (int y = 0; y < fresh.rows; ++y)
-    for (int x = 0; x < fresh.cols; ++x) {
-      const cv::Vec4f d = shown(y, x) - fresh(y, x);
-      rest.squares(y, x) = d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-      rest.shown_alpha(y, x) = shown(y, x)[3];
-    }
-  return rest;
+/// ‖shown - fresh‖² of the colours.
+cv::Mat1f color_squares(const cv::Mat4f& shown, const cv::Mat4f& fresh) {
+  cv::Mat1f squares(fresh.size());
+  std::transform(shown.begin(), shown.end(), fresh.begin(), squares.begin(),
+                 [](const cv::Vec4f& p, const cv::Vec4f& q) {
+                   const cv::Vec4f d = p - q;
+                   return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                 });
+  return squares;
 }
 
-/// The least of it over the displacements found and those about kBeside_px beside them, none longer than
-/// `longest_px`.
-Rest least_rest(const cv::Mat4f& shown, const cv::Mat4f& fresh, const cv::Mat2f& shift, double longest_px) {
-  cv::Mat2f within = shift.clone();
-  shorten(longest_px, within);
-  Rest least = rest_of(displaced(shown, within), fresh);
+/// The least of them over the displacements `within` and those about kBeside_px beside them, none longer than
+/// `longest_px`. `carried`: shown, displaced by `within`.
+cv::Mat1f least_squares(const cv::Mat4f& shown, const cv::Mat4f& fresh, const cv::Mat2f& within,
+                        const cv::Mat4f& carried, double longest_px) {
+  cv::Mat1f least = color_squares(carried, fresh);
   const auto beside = static_cast<float>(std::min(kBeside_px, longest_px));
   if (beside == 0) return least;
   for (int dy = -1; dy <= 1; ++dy)
@@ -212,26 +206,28 @@ Rest least_rest(const cv::Mat4f& shown, const cv::Mat4f& fresh, const cv::Mat2f&
       const float share = beside / std::hypot(static_cast<float>(dx), static_cast<float>(dy));
       cv::Mat2f near = within + cv::Scalar(share * static_cast<float>(dx), share * static_cast<float>(dy));
       shorten(longest_px, near);
-      least.squares = cv::min(least.squares, rest_of(displaced(shown, near), fresh).squares);
+      least = cv::min(least, color_squares(displaced(shown, near), fresh));
     }
   return least;
 }
 
-void measure_rest(const cv::Mat4f& linear_shown, const cv::Mat4f& linear_fresh, const cv::Mat2f& shift,
+void measure_rest(const cv::Mat4f& linear_shown, const cv::Mat4f& linear_fresh, cv::Mat2f shift,
                   double explained_px, ApparentShift& result) {
   cv::Mat4f shown, fresh;
   cv::GaussianBlur(linear_shown, shown, {}, 1, 1, cv::BORDER_REPLICATE);
   cv::GaussianBlur(linear_fresh, fresh, {}, 1, 1, cv::BORDER_REPLICATE);
-  const Rest rest = least_rest(shown, fresh, shift, explained_px);
+  shorten(explained_px, shift);
+  const cv::Mat4f carried = displaced(shown, shift);
+  const cv::Mat1f rest = least_squares(shown, fresh, shift, carried, explained_px);
   double squares = 0;
   long seen = 0, solid = 0, missing = 0;
   for (int y = 0; y < fresh.rows; ++y)
     for (int x = 0; x < fresh.cols; ++x) {
-      const float of_shown = rest.shown_alpha(y, x), of_fresh = fresh(y, x)[3];
+      const float of_shown = carried(y, x)[3], of_fresh = fresh(y, x)[3];
       solid += of_fresh > kSolid;
       missing += of_fresh > kSolid && of_shown < kNothing;
       if (of_shown < kSeen && of_fresh < kSeen) continue;
-      squares += static_cast<double>(rest.squares(y, x));
+      squares += static_cast<double>(rest(y, x));
       ++seen;
     }
   if (seen > 0) result.rms = std::sqrt(squares / static_cast<double>(seen));

@@ -56,9 +56,14 @@ Image8 over_grey(chunker::Frame frame, const Crop& crop) {
   return cropped(to_image8(frame), crop);
 }
 
+/// Both pictures of a reuse, over grey.
+struct Pictures {
+  Image8 shown, fresh;
+};
+
 /// Over the pixels of `crop` that are covered by half in either frame.
-double psnr_of_layer(const chunker::Frame& shown, const chunker::Frame& fresh, const Crop& crop) {
-  const Image8 a = over_grey(shown, crop), b = over_grey(fresh, crop);
+double psnr_of_layer(const chunker::Frame& shown, const chunker::Frame& fresh, const Crop& crop,
+                     const Pictures& pictures) {
   double squares = 0;
   long covered = 0;
   for (int y = 0; y < crop.height; ++y)
@@ -71,7 +76,7 @@ double psnr_of_layer(const chunker::Frame& shown, const chunker::Frame& fresh, c
       const auto in_crop = 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(crop.width) +
                                 static_cast<std::size_t>(x));
       for (std::size_t k = in_crop; k < in_crop + 3; ++k) {
-        const double d = a.rgb[k] - b.rgb[k];
+        const double d = pictures.shown.rgb[k] - pictures.fresh.rgb[k];
         squares += d * d;
       }
     }
@@ -92,10 +97,10 @@ std::string audit_line(const char* pattern, auto... values) {
 
 std::vector<std::string> audit_title(const LayerAudit& audit) {
   const AuditedReuse& w = audit.worst;
-  return {
-      audit_line("%s, frame %d, drawn %d frames before", audit.layer.c_str(), w.frame, w.age_frames),
-      audit_line("said: geometric %.2f px, photometric %.3f", w.geometric_px, w.photometric),
-      audit_line("seen: shift %.2f px (p95), RMS %.3f, missing %.1f %%", w.shift_px, w.rms, 100 * w.missing)};
+  return {audit_line("%s, frame %d, drawn %d frames before", audit.layer.c_str(), w.frame, w.age_frames),
+          audit_line("said: geometric %.2f px, photometric %.3f", w.geometric_px, w.photometric),
+          audit_line("seen: shift %.2f px (p95), RMS %.3f, %.1f dB, missing %.1f %%", w.shift_px, w.rms,
+                     w.psnr_db, 100 * w.missing)};
 }
 
 Image8 sheet_of_worst(const LayerAudit& audit, const Image8& shown, const Image8& fresh) {
@@ -141,6 +146,8 @@ void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameRe
     const chunker::Frame fresh = drawn_fresh(pipeline, state, report, sprite.layer, prepared);
     const ApparentShift seen = apparent_shift(shown, fresh, decision.shown_geometric_px);
     const fiducials::Photometric& light = report.assessments[sprite.layer].fiducials.photometric;
+    Pictures pictures;
+    if (seen.seen.width > 0) pictures = {over_grey(shown, seen.seen), over_grey(fresh, seen.seen)};
     AuditedReuse reuse{report.frame,
                        sprite.age_frames,
                        decision.shown_geometric_px,
@@ -149,13 +156,13 @@ void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameRe
                        seen.rms,
                        seen.missing,
                        0,
-                       psnr_of_layer(shown, fresh, seen.seen)};
+                       psnr_of_layer(shown, fresh, seen.seen, pictures)};
     ++kept.audit.audited;
     kept.audit.all.push_back(reuse);
     kept.audit.beyond += reuse.beyond();
     if (kept.audit.worst.frame >= 0 && reuse.excess() <= kept.audit.worst.excess()) continue;
     if (seen.seen.width > 0) {
-      kept.shown = over_grey(shown, seen.seen), kept.fresh = over_grey(fresh, seen.seen);
+      kept.shown = std::move(pictures.shown), kept.fresh = std::move(pictures.fresh);
       reuse.flip = mean(flip_map(kept.shown, kept.fresh));
     }
     kept.audit.worst = reuse;
