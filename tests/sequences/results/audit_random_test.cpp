@@ -71,7 +71,7 @@ std::vector<LayerAudit> audit_of_sequence(const Sequence& sequence, int frames, 
   return auditor.finish();
 }
 
-/// By hand: what tests/sequences/results/calibration.h is read off.
+/// By hand: the table of tests/sequences/results/calibration.h.
 TEST(AuditRandom, CalibrationByShippedSequences) {
   if (!std::getenv("TALISMAN_CALIBRATE")) GTEST_SKIP() << "TALISMAN_CALIBRATE asks for it";
   const tests::TemporaryFolder folder;
