@@ -2,9 +2,11 @@
 #include "sequences/import/obj_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <numeric>
 #include <optional>
 #include <unordered_map>
 
@@ -14,6 +16,7 @@
 #include <tiny_obj_loader.h>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/ear_clipping.h"
 #include "sequences/import/lower_case.h"
 #include "sequences/import/obj_libraries.h"
 #include "sequences/import/wide_text.h"
@@ -34,7 +37,30 @@ struct ObjWords {
   std::vector<std::string> libraries;  ///< what is behind each "mtllib"
   std::vector<std::string> materials;  ///< in the order of their first use
   std::map<std::string, int> id_of;    ///< by the first word, as the geometry's reader has it
+  std::map<std::size_t, std::size_t>
+      large_faces;  ///< corners of those that have more than the reader can count
 };
+
+constexpr std::size_t kMostCounted = 255;
+
+/// Corners of the face whose line goes on at `at`, counted up to `most`.
+std::size_t corners_of(const std::string& line, std::size_t at, std::size_t most) {
+  std::size_t corners = 0;
+  while (corners < most && (at = line.find_first_not_of(" \t\r", at)) != std::string::npos) {
+    ++corners;
+    at = line.find_first_of(" \t\r", at);
+  }
+  return corners;
+}
+
+/// `faces` are those with three corners or more, as the geometry's reader numbers them.
+void count_face(const std::string& line, std::size_t at, std::size_t& faces, ObjWords& words) {
+  if (corners_of(line, at, 3) < 3) return;
+  const bool may_be_large = line.size() - at > 2 * kMostCounted;
+  const std::size_t corners = may_be_large ? corners_of(line, at, line.size()) : 0;
+  if (corners > kMostCounted) words.large_faces.emplace(faces, corners);
+  ++faces;
+}
 
 /// The geometry's reader takes what is no number for 0.
 void check_numbers(const std::string& line) {
@@ -46,10 +72,12 @@ void check_numbers(const std::string& line) {
 ObjWords words_of(const std::string& path) {
   ObjWords words;
   const std::unique_ptr<std::istream> in = open_text(path);
+  std::size_t faces = 0;
   for (std::string line; std::getline(*in, line);) {
     const std::size_t at = line.find_first_not_of(" \t");
     if (at == std::string::npos) continue;
     if (line[at] == 'v') check_numbers(line);
+    if (line[at] == 'f') count_face(line, at + 1, faces, words);
     if (line[at] != 'm' && line[at] != 'u') continue;
     if (line.compare(at, 6, "mtllib") == 0) words.libraries.push_back(rest_of_line(line, at + 6));
     if (line.compare(at, 6, "usemtl") != 0) continue;
@@ -77,9 +105,58 @@ class NumberMaterials : public tinyobj::MaterialReader {
 
 struct ObjContent {
   tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;
-  bool has_groups = false;  ///< smoothing groups
+  std::vector<tinyobj::shape_t> shapes;  ///< of triangles
+  bool has_groups = false;               ///< smoothing groups
 };
+
+dvec3 place_of(const tinyobj::attrib_t& attributes, int vertex) {
+  const std::size_t at = 3 * static_cast<std::size_t>(vertex);
+  return {attributes.vertices[at], attributes.vertices[at + 1], attributes.vertices[at + 2]};
+}
+
+void check_corners(const ObjContent& content) {
+  const auto count = static_cast<int>(content.attributes.vertices.size() / 3);
+  for (const tinyobj::shape_t& shape : content.shapes)
+    for (const tinyobj::index_t& corner : shape.mesh.indices)
+      if (corner.vertex_index < 0 || corner.vertex_index >= count)
+        throw InputError("cannot be read as a model: a face names vertex " +
+                         std::to_string(corner.vertex_index + 1) + ", rule: from 1 to " +
+                         std::to_string(count));
+}
+
+/// Corners of each face of a shape, whose first is the `face`th of the file.
+std::vector<std::size_t> corner_counts(const tinyobj::mesh_t& polygons, std::size_t face,
+                                       const ObjWords& words) {
+  std::vector<std::size_t> counts(polygons.num_face_vertices.begin(), polygons.num_face_vertices.end());
+  for (auto large = words.large_faces.lower_bound(face); large != words.large_faces.end(); ++large)
+    if (large->first - face < counts.size()) counts[large->first - face] = large->second;
+  if (std::accumulate(counts.begin(), counts.end(), std::size_t{0}) != polygons.indices.size())
+    throw InputError("cannot be read as a model: the corners of its faces cannot be told apart");
+  return counts;
+}
+
+/// Polygons cut.
+tinyobj::mesh_t in_triangles(tinyobj::mesh_t polygons, const std::vector<std::size_t>& counts,
+                             const tinyobj::attrib_t& attributes) {
+  if (std::all_of(counts.begin(), counts.end(), [](std::size_t n) { return n == 3; })) return polygons;
+  tinyobj::mesh_t mesh;
+  mesh.indices.reserve(polygons.indices.size());
+  std::vector<dvec3> places;
+  std::size_t first = 0;
+  for (std::size_t f = 0; f < counts.size(); ++f) {
+    const tinyobj::index_t* corners = &polygons.indices[first];
+    first += counts[f];
+    places.clear();
+    for (std::size_t k = 0; k < counts[f]; ++k)
+      places.push_back(place_of(attributes, corners[k].vertex_index));
+    for (const std::array<int, 3>& triangle : triangulated(places)) {
+      for (const int k : triangle) mesh.indices.push_back(corners[k]);
+      mesh.material_ids.push_back(polygons.material_ids[f]);
+      mesh.smoothing_group_ids.push_back(polygons.smoothing_group_ids[f]);
+    }
+  }
+  return mesh;
+}
 
 ObjContent content_of(const std::string& path, const ObjWords& words) {
   ObjContent content;
@@ -89,8 +166,15 @@ ObjContent content_of(const std::string& path, const ObjWords& words) {
   std::vector<tinyobj::material_t> unused;
   std::string warning, error;
   if (!tinyobj::LoadObj(&content.attributes, &content.shapes, &unused, &warning, &error, in.get(), &numbers,
-                        true, false))
+                        false, false))
     throw InputError("cannot be read as a model: " + error.substr(0, error.find('\n')));
+  check_corners(content);
+  std::size_t face = 0;
+  for (tinyobj::shape_t& shape : content.shapes) {
+    const std::vector<std::size_t> counts = corner_counts(shape.mesh, face, words);
+    face += counts.size();
+    shape.mesh = in_triangles(std::move(shape.mesh), counts, content.attributes);
+  }
   for (const tinyobj::shape_t& shape : content.shapes)
     for (const unsigned group : shape.mesh.smoothing_group_ids) content.has_groups |= group > 0;
   return content;
@@ -124,18 +208,12 @@ std::vector<int> materials_of(ImportedModel& model, const ModelPlace& place, con
   return numbers;
 }
 
-dvec3 place_of(const ObjContent& content, int vertex) {
-  const auto& v = content.attributes.vertices;
-  const std::size_t at = 3 * static_cast<std::size_t>(vertex);
-  return {v[at], v[at + 1], v[at + 2]};
-}
-
 /// The middle of all vertices, where they lie far from the file's origin; else zero.
 dvec3 origin_of(const ObjContent& content) {
   dvec3 lo(HUGE_VAL), hi(-HUGE_VAL);
   const int count = static_cast<int>(content.attributes.vertices.size() / 3);
   for (int i = 0; i < count; ++i) {
-    const dvec3 p = place_of(content, i);
+    const dvec3 p = place_of(content.attributes, i);
     lo = glm::min(lo, p), hi = glm::max(hi, p);
   }
   const double size = glm::length(hi - lo), away = glm::length(glm::max(glm::abs(lo), glm::abs(hi)));
@@ -180,7 +258,8 @@ class SmoothNormals {
     number_of.reserve(static_cast<std::size_t>(count));
     place_.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i)
-      place_.push_back(number_of.emplace(place_of(content_, i) + 0.0, number_of.size()).first->second);
+      place_.push_back(
+          number_of.emplace(place_of(content_.attributes, i) + 0.0, number_of.size()).first->second);
     sums_.resize(number_of.size(), dvec3(0));
   }
   dvec3& sum_at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner) {
@@ -191,7 +270,8 @@ class SmoothNormals {
   }
   dvec3 flat(const tinyobj::mesh_t& mesh, std::size_t face) const {
     dvec3 p[3];
-    for (std::size_t k = 0; k < 3; ++k) p[k] = place_of(content_, mesh.indices[3 * face + k].vertex_index);
+    for (std::size_t k = 0; k < 3; ++k)
+      p[k] = place_of(content_.attributes, mesh.indices[3 * face + k].vertex_index);
     const dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
     const double length = glm::length(n);
     return length > 0 ? n / length : dvec3(0);
@@ -260,7 +340,7 @@ class MeshBuilder {
   }
 
   void add_vertex(const tinyobj::index_t& corner, const layers::vec3& normal, layers::Mesh& mesh) {
-    mesh.positions.emplace_back(place_of(content_, corner.vertex_index) - origin_);
+    mesh.positions.emplace_back(place_of(content_.attributes, corner.vertex_index) - origin_);
     mesh.normals.push_back(normal);
     const auto& uv = content_.attributes.texcoords;
     const std::size_t at = 2 * static_cast<std::size_t>(std::max(corner.texcoord_index, 0));
@@ -284,16 +364,6 @@ class MeshBuilder {
   std::vector<int> used_;
   bool has_uvs_ = false;
 };
-
-void check_corners(const ObjContent& content) {
-  const auto count = static_cast<int>(content.attributes.vertices.size() / 3);
-  for (const tinyobj::shape_t& shape : content.shapes)
-    for (const tinyobj::index_t& corner : shape.mesh.indices)
-      if (corner.vertex_index < 0 || corner.vertex_index >= count)
-        throw InputError("cannot be read as a model: a face names vertex " +
-                         std::to_string(corner.vertex_index + 1) + ", rule: from 1 to " +
-                         std::to_string(count));
-}
 
 void add_shape(layers::Scene& scene, const tinyobj::shape_t& shape, const std::vector<int>& numbers, int root,
                MeshBuilder& builder) {
@@ -334,7 +404,6 @@ ImportedModel read_obj(const ModelPlace& place) {
   files.look_for(place.path);
   const ObjWords words = words_of(place.path);
   const ObjContent content = content_of(place.path, words);
-  check_corners(content);
   ImportedModel model;
   warn_of_losses(content, model);
   std::vector<std::string> losses = std::move(model.warnings);

@@ -92,11 +92,9 @@ bool have_same_names(const ByMaterial& a, const ByMaterial& b) {
                     [](const auto& x, const auto& y) { return x.first == y.first; });
 }
 
-/// One polygon of 66 corners that goes around a hole in them: tinyobjloader's ears leave out 20 of its triangles, as
-/// docs/models.md says. And one that goes 234 times around its square.
+/// A polygon that goes 234 times around its square.
 bool is_no_simple_polygon(const std::string& file) {
-  const std::string name = std::filesystem::path(file).filename().string();
-  return name == "concave_polygon.obj" || name == "space_in_material_name.obj" || name == "box_longline.obj";
+  return std::filesystem::path(file).filename() == "box_longline.obj";
 }
 
 std::vector<std::string> obj_files() {

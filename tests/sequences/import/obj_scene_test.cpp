@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // OBJ by the specification of Wavefront (1995), on files of a few faces.
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -62,6 +64,38 @@ TEST(ReadObj, SmoothingGroupsEndAtTheirBorders) {
   EXPECT_NEAR(normal("s 1\n", "s 1\n").z, normal("", "").z, 1e-6);  // without any: all are one
   EXPECT_LT(normal("s 1\n", "s 1\n").z, 0.95);
   EXPECT_NEAR(normal("s off\n", "s 1\n").z, 1, 1e-6);
+}
+
+/// Sum of the triangles' areas in the plane of x and y.
+double flat_area(const layers::Scene& scene) {
+  double sum = 0;
+  for (const layers::Mesh& mesh : scene.meshes)
+    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3) {
+      const layers::vec3 a = mesh.positions[mesh.indices[i]], b = mesh.positions[mesh.indices[i + 1]],
+                         c = mesh.positions[mesh.indices[i + 2]];
+      sum += 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
+    }
+  return sum;
+}
+
+TEST(ReadObj, PolygonsOfManyCornersStayWhole) {
+  // A comb of 200 teeth, 403 corners: each tooth has an area of 1/2 above a bar of 200 x 1. Between two triangles.
+  std::string text = "v 0 0 0\nv 200 0 0\n", face = "f 1 2";
+  for (int k = 200; k > 0; --k) {
+    text += "v " + std::to_string(k) + " 1 0\nv " + std::to_string(k - 0.5) + " 2 0\n";
+    face += " " + std::to_string(2 * (200 - k) + 3) + " " + std::to_string(2 * (200 - k) + 4);
+  }
+  text += "v 0 1 0\n", face += " 403\n";
+  EXPECT_NEAR(flat_area(read_obj_text(text + "f 1 2 3\n" + face + "f 1 2 403\n").scene), 100 + 300 + 100,
+              1e-3);
+  EXPECT_NEAR(flat_area(read_obj_text(text + face).scene), 300, 1e-3);
+}
+
+TEST(ReadObj, PolygonAroundAHoleAndConcaveQuadrilateral) {
+  const std::string square = "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nv 1 1 0\nv 1 3 0\nv 3 3 0\nv 3 1 0\n";
+  EXPECT_NEAR(flat_area(read_obj_text(square + "f 1 2 3 4 1 5 6 7 8 5\n").scene), 12, 1e-4);
+  EXPECT_NEAR(flat_area(read_obj_text("v 0 0 0\nv 4 -1 0\nv 3.5 0 0\nv 4 1 0\nf 1 2 3 4\n").scene), 3.5,
+              1e-4);
 }
 
 TEST(ReadObj, PartsAreObjectsAndTheirMaterials) {
