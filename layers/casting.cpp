@@ -39,13 +39,26 @@ BoxBounds bounds_of_points(std::span<const dvec3> points) {
 
 // ---- Tiles ----
 
-using CornerTriangle = std::array<dvec3, 3>;
+struct TileTriangle {
+  dvec3 corner_sum;
+  std::size_t first;  ///< of its indices in the mesh
+};
 
-BoxBounds bounds_of_triangles(std::span<const CornerTriangle> triangles) {
+BoxBounds bounds_of_triangles(const Mesh& mesh, std::span<const TileTriangle> triangles) {
   BoxBounds bounds;
-  for (const CornerTriangle& t : triangles)
-    for (const dvec3& p : t) bounds.include(p);
+  for (const TileTriangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) bounds.include(dvec3(mesh.positions[mesh.indices[t.first + k]]));
   return bounds;
+}
+
+std::vector<TileTriangle> tile_triangles(const Mesh& mesh) {
+  std::vector<TileTriangle> triangles;
+  triangles.reserve(mesh.indices.size() / 3);
+  for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
+    triangles.push_back({dvec3(mesh.positions[mesh.indices[i]]) + dvec3(mesh.positions[mesh.indices[i + 1]]) +
+                             dvec3(mesh.positions[mesh.indices[i + 2]]),
+                         i});
+  return triangles;
 }
 
 void add_tile(int node, const BoxBounds& b, std::vector<CastingTile>& tiles) {
@@ -56,21 +69,21 @@ void add_tile(int node, const BoxBounds& b, std::vector<CastingTile>& tiles) {
 }
 
 /// Halves at the median of the longest side, as long as that takes air away.
-void cut(int node, std::span<CornerTriangle> triangles, int cuts_left, double thickness,
+void cut(int node, const Mesh& mesh, std::span<TileTriangle> triangles, int cuts_left, double thickness,
          std::vector<CastingTile>& tiles) {
-  const BoxBounds whole = bounds_of_triangles(triangles);
+  const BoxBounds whole = bounds_of_triangles(mesh, triangles);
   const dvec3 size = whole.size();
   const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
   if (cuts_left == 0 || triangles.size() <= kFewTriangles) return add_tile(node, whole, tiles);
   const auto middle = triangles.begin() + static_cast<std::ptrdiff_t>(triangles.size() / 2);
   std::nth_element(triangles.begin(), middle, triangles.end(),
-                   [axis](const CornerTriangle& a, const CornerTriangle& b) {
-                     return a[0][axis] + a[1][axis] + a[2][axis] < b[0][axis] + b[1][axis] + b[2][axis];
+                   [axis](const TileTriangle& a, const TileTriangle& b) {
+                     return a.corner_sum[axis] < b.corner_sum[axis];
                    });
-  const std::span<CornerTriangle> low(triangles.begin(), middle), high(middle, triangles.end());
+  const std::span<TileTriangle> low(triangles.begin(), middle), high(middle, triangles.end());
   std::vector<CastingTile> finer;
-  cut(node, low, cuts_left - 1, thickness, finer);
-  cut(node, high, cuts_left - 1, thickness, finer);
+  cut(node, mesh, low, cuts_left - 1, thickness, finer);
+  cut(node, mesh, high, cuts_left - 1, thickness, finer);
   double bulk = 0;
   for (const CastingTile& tile : finer) bulk += BoxBounds{tile.corners[0], tile.corners[7]}.bulk(thickness);
   if (!(bulk < kWorthCutting * whole.bulk(thickness))) return add_tile(node, whole, tiles);
@@ -168,13 +181,10 @@ std::vector<CastingTile> casting_tiles(const Scene& scene, std::span<const int> 
     const Part& part = scene.parts[index];
     if (deforms(scene, part)) return {};
     const Mesh& mesh = scene.meshes[part.mesh];
-    std::vector<CornerTriangle> triangles;
-    for (std::size_t i = 0; i + 2 < mesh.indices.size(); i += 3)
-      triangles.push_back({dvec3(mesh.positions[mesh.indices[i]]), dvec3(mesh.positions[mesh.indices[i + 1]]),
-                           dvec3(mesh.positions[mesh.indices[i + 2]])});
+    std::vector<TileTriangle> triangles = tile_triangles(mesh);
     if (triangles.empty()) continue;
-    const double thickness = 1e-3 * glm::length(bounds_of_triangles(triangles).size());
-    cut(part.node, triangles, kMostCuts, thickness, tiles);
+    const double thickness = 1e-3 * glm::length(bounds_of_triangles(mesh, triangles).size());
+    cut(part.node, mesh, triangles, kMostCuts, thickness, tiles);
   }
   return tiles;
 }

@@ -64,8 +64,10 @@ std::string place_defect(const std::string& what, const V& place) {
 }
 
 std::string places_defect(const char* what, const std::vector<vec3>& places) {
+  const auto lies_near = [](float x) { return std::fabs(x) <= kFarthestPlace_m; };  // no if it is nan
   for (std::size_t i = 0; i < places.size(); ++i)
-    if (auto defect = place_defect(text(what, " ", i), places[i]); !defect.empty()) return defect;
+    if (const vec3& p = places[i]; !(lies_near(p.x) && lies_near(p.y) && lies_near(p.z)))
+      return place_defect(text(what, " ", i), p);
   return {};
 }
 

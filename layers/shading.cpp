@@ -57,6 +57,7 @@ struct Soup {
 
 void add_part(const dmat4& node_from_part, const Mesh& mesh, Soup& soup) {
   const std::size_t first = soup.points.size();
+  soup.points.reserve(first + mesh.positions.size());
   for (const vec3& p : mesh.positions) {
     soup.points.push_back(dvec3(node_from_part * dvec4(dvec3(p), 1)));
     soup.finite = soup.finite && std::isfinite(glm::dot(soup.points.back(), soup.points.back()));
