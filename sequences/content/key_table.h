@@ -50,8 +50,9 @@ class Table {
   /// A key with a member of its own. `member` is a pointer to it or a function from T& to a reference; the
   /// value of the format is converted to its type.
   template <typename Member, typename Value>
-  Table& key(std::string name, Member member, Format<Value> format, std::string unit, std::string meaning) {
-    KeyRow row = described(std::move(name), format.type, std::move(unit), std::move(meaning));
+  Table& key(const std::string& name, Member member, Format<Value> format, const std::string& unit,
+             const std::string& meaning) {
+    KeyRow row = described(name, format.type, unit, meaning);
     row.standard = written(std::invoke(member, defaults_), format);
     row.read = [member, read = std::move(format.read)](const YamlValue& value, void* into) {
       auto& place = std::invoke(member, *static_cast<T*>(into));
@@ -79,17 +80,17 @@ class Table {
     return *this;
   }
   /// What holds without the key, where no value of it says that.
-  Table& otherwise(std::string words) {
-    last().standard_in_words = std::move(words);
+  Table& otherwise(const std::string& words) {
+    last().standard_in_words = words;
     last().standard.clear();
     return *this;
   }
-  Table& only_with(std::string key) {
-    last().only_with = std::move(key);
+  Table& only_with(const std::string& key) {
+    last().only_with = key;
     return *this;
   }
-  Table& not_with(std::vector<std::string> keys) {
-    last().not_with = std::move(keys);
+  Table& not_with(const std::vector<std::string>& keys) {
+    last().not_with = keys;
     return *this;
   }
 

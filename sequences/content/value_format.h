@@ -43,8 +43,8 @@ Format<std::string> one_of(const std::vector<std::string>& words);
 
 /// The same with a rule that its reader, or whoever uses the value, checks beyond the type.
 template <typename Value>
-Format<Value> with_rule(Format<Value> format, std::string rule) {
-  format.type.rule = std::move(rule);
+Format<Value> with_rule(Format<Value> format, const std::string& rule) {
+  format.type.rule = rule;
   return format;
 }
 

@@ -40,7 +40,7 @@ std::vector<std::string> encoder_arguments() {
 /// yuv420p wants even sizes: an odd last column or row is doubled rather than every pixel resampled. Colours
 /// become BT.709, and say so: players guess the matrix otherwise.
 std::string video_filter(layers::ivec2 size) {
-  const std::string to_yuv = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
+  std::string to_yuv = "scale=out_color_matrix=bt709:out_range=tv,format=yuv420p";
   if (size.x % 2 == 0 && size.y % 2 == 0) return to_yuv;
   return "pad=ceil(iw/2)*2:ceil(ih/2)*2,fillborders=right=" + std::to_string(size.x % 2) +
          ":bottom=" + std::to_string(size.y % 2) + ":mode=smear," + to_yuv;

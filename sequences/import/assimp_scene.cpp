@@ -79,11 +79,11 @@ bool tells_nothing(const std::string& name) {
 
 /// The node's name; else its mesh's, or of the root the file's.
 std::string telling_name(const Import& import, const aiNode& node) {
-  const std::string own = text(node.mName);
+  std::string own = text(node.mName);
   if (!tells_nothing(own)) return own;
   if (node.mNumMeshes > 0 && node.mMeshes[0] < import.from.mNumMeshes &&
       import.from.mMeshes[node.mMeshes[0]]) {
-    const std::string mesh = text(import.from.mMeshes[node.mMeshes[0]]->mName);
+    std::string mesh = text(import.from.mMeshes[node.mMeshes[0]]->mName);
     if (!tells_nothing(mesh)) return mesh;
   }
   return node.mParent ? own : std::filesystem::path(import.place.path).stem().string();

@@ -83,13 +83,13 @@ layers::Transform parts_of_transform(const Json& node) {
 
 /// What tells something about a node: its name, or that of what it carries.
 std::string name_of(const GltfImport& import, const Json& node, int index) {
-  const std::string own = text_of(node, "name");
+  std::string own = text_of(node, "name");
   if (!own.empty()) return own;
   for (const char* kind : {"mesh", "camera", "skin"}) {
     const int used = index_of(node, kind);
     if (used < 0) continue;
     const std::string plural = std::string(kind) + (std::string(kind) == "mesh" ? "es" : "s");
-    const std::string name = text_of(item_of(import.file, plural.c_str(), used), "name");
+    std::string name = text_of(item_of(import.file, plural.c_str(), used), "name");
     if (!name.empty()) return name;
   }
   return "node " + std::to_string(index);

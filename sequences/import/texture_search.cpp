@@ -116,20 +116,19 @@ std::string find_file(const ModelPlace& model, const std::string& written, FileU
   if (path.empty()) return {};
   const std::vector<fs::path> roots = roots_of(model);
   for (const fs::path& base : bases_of(model))
-    if (const std::string found = allowed(base / path, roots, files); !found.empty()) return found;
+    if (std::string found = allowed(base / path, roots, files); !found.empty()) return found;
   for (const fs::path& place : places_of(model))
-    if (const std::string found = allowed(place / path.filename(), roots, files); !found.empty())
-      return found;
+    if (std::string found = allowed(place / path.filename(), roots, files); !found.empty()) return found;
   return {};
 }
 
 std::string find_texture(const ModelPlace& model, const std::string& written, FileUses& files) {
   const fs::path path = with_slashes(written);
-  if (const std::string found = find_file(model, written, files); !found.empty())
+  if (std::string found = find_file(model, written, files); !found.empty())
     return is_picture(found) ? found : std::string();
   const std::vector<fs::path> roots = roots_of(model);
   for (const fs::path& place : places_of(model))
-    if (const std::string found = similar_in(place, path, roots, files); !found.empty()) return found;
+    if (std::string found = similar_in(place, path, roots, files); !found.empty()) return found;
   return {};
 }
 

@@ -31,7 +31,7 @@ class ProjectedPart {
         two_sided_(part.material >= 0 && frame.scene->materials[part.material].two_sided),
         near_m_(frame.camera.near_m),
         display_px_(pipeline.settings.view.display_px),
-        sprite_({0, 0}, dvec2(placement.size_px)),
+        sprite_{{0, 0}, dvec2(placement.size_px)},
         sprite_from_screen_(inverse(placement.screen_from_sprite)) {
     const layers::dmat4 clip_from_part =
         layers::clip_from_world(frame.camera, display_px_) * frame.world_from_node[part.node];

@@ -110,13 +110,14 @@ PYBIND11_MODULE(_talisman, module) {
   talisman::sequences::use_cache({talisman::sequences::default_cache_folder()});  // as the tool does
   module.doc() = "What talisman/__init__.py is made of; not for others.";
   // Registered for this module alone; std::runtime_error is Python's RuntimeError already.
-  py::register_local_exception_translator([](std::exception_ptr thrown) {
-    try {
-      if (thrown) std::rethrow_exception(thrown);
-    } catch (const sequences::InputError& error) {
-      PyErr_SetString(PyExc_ValueError, error.what());
-    }
-  });
+  py::register_local_exception_translator(
+      [](std::exception_ptr thrown) {  // NOLINT(performance-unnecessary-value-param): its type
+        try {
+          if (thrown) std::rethrow_exception(thrown);
+        } catch (const sequences::InputError& error) {
+          PyErr_SetString(PyExc_ValueError, error.what());
+        }
+      });
   module.def("fit", &fit, py::arg("points"), py::arg("targets"), py::arg("curve"));
   module.def("plan", &plan, py::arg("sequence"), py::arg("words"));
   module.def("render", &render, py::arg("sequence"), py::arg("frame"), py::arg("words"));

@@ -40,7 +40,7 @@ struct Workload {
   layers::LayerState then, now;
 };
 
-void Capture(benchmark::State& run) {
+void capture_scene(benchmark::State& run) {
   const Workload work(run);
   const layers::SceneFrame frame = work.world.frame_at(work.place);
   for (auto _ : run) {
@@ -48,20 +48,20 @@ void Capture(benchmark::State& run) {
   }
 }
 
-void Correspond(benchmark::State& run) {
+void correspond_points(benchmark::State& run) {
   const Workload work(run);
   std::size_t points = 0;
   for (auto _ : run) points = correspond(work.then, work.now, work.world.bound.hull).point.size();
   run.counters["points"] = static_cast<double>(points);
 }
 
-void Place(benchmark::State& run) {
+void place_on_display(benchmark::State& run) {
   const Workload work(run);
   for (auto _ : run)
     benchmark::DoNotOptimize(place_sprite(work.then, work.now, work.world.bound.hull, {}, {}));
 }
 
-void Frame(benchmark::State& run) {
+void whole_frame(benchmark::State& run) {
   const Workload work(run);
   const layers::SceneFrame frame = work.world.frame_at(work.place);
   for (auto _ : run) {
@@ -73,10 +73,10 @@ void Frame(benchmark::State& run) {
 void situations(benchmark::internal::Benchmark* bench) {
   bench->ArgNames({"kind", "situation"})->ArgsProduct({{0, 1, 2}, {InView, CutBySide, AroundCamera}});
 }
-BENCHMARK(Capture)->Apply(situations);
-BENCHMARK(Correspond)->Apply(situations);
-BENCHMARK(Place)->Apply(situations);
-BENCHMARK(Frame)->Apply(situations);
+BENCHMARK(capture_scene)->Apply(situations);
+BENCHMARK(correspond_points)->Apply(situations);
+BENCHMARK(place_on_display)->Apply(situations);
+BENCHMARK(whole_frame)->Apply(situations);
 
 }  // namespace
 }  // namespace talisman::tests

@@ -38,8 +38,8 @@ struct Workload {
   }
 };
 
-void Plan(benchmark::State& run, regulator::Policy policy,
-          sequences::Cycles cycles = sequences::Cycles::Keep) {
+void plan_sequence(benchmark::State& run, regulator::Policy policy,
+                   sequences::Cycles cycles = sequences::Cycles::Keep) {
   const Workload work(policy, cycles);
   const sequences::Pipeline pipeline = sequences::make_pipeline(work.scene, work.layers, work.settings);
   double plan_ms = 0;
@@ -58,19 +58,19 @@ void Plan(benchmark::State& run, regulator::Policy policy,
   run.counters["renders"] = static_cast<double>(renders) / layer_frames;
   run.counters["share_of_16ms"] = plan_ms / static_cast<double>(frames) / (1e3 / 60);
 }
-BENCHMARK_CAPTURE(Plan, threshold, regulator::Policy::Threshold)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Plan, threshold_merging, regulator::Policy::Threshold, sequences::Cycles::Merge)
+BENCHMARK_CAPTURE(plan_sequence, threshold, regulator::Policy::Threshold)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(plan_sequence, threshold_merging, regulator::Policy::Threshold, sequences::Cycles::Merge)
     ->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Plan, interpolate, regulator::Policy::Interpolate)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(Plan, budget, regulator::Policy::Budget)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(plan_sequence, interpolate, regulator::Policy::Interpolate)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(plan_sequence, budget, regulator::Policy::Budget)->Unit(benchmark::kMillisecond);
 
-void SceneAt(benchmark::State& run) {
+void scene_of_frame(benchmark::State& run) {
   const Workload work(regulator::Policy::Threshold);
   for (auto _ : run) benchmark::DoNotOptimize(work.scene.at(1.3));
 }
-BENCHMARK(SceneAt)->Unit(benchmark::kMicrosecond);
+BENCHMARK(scene_of_frame)->Unit(benchmark::kMicrosecond);
 
-void CaptureAll(benchmark::State& run) {
+void capture_all(benchmark::State& run) {
   const Workload work(regulator::Policy::Threshold);
   const sequences::Pipeline pipeline = sequences::make_pipeline(work.scene, work.layers, work.settings);
   const layers::SceneFrame frame = work.scene.at(1.3);
@@ -79,9 +79,9 @@ void CaptureAll(benchmark::State& run) {
       benchmark::DoNotOptimize(
           layers::capture(frame, layer, pipeline.authored.bound(layer.id), work.settings.view));
 }
-BENCHMARK(CaptureAll)->Unit(benchmark::kMicrosecond);
+BENCHMARK(capture_all)->Unit(benchmark::kMicrosecond);
 
-void Order(benchmark::State& run) {
+void order_layers(benchmark::State& run) {
   const Workload work(regulator::Policy::Threshold);
   const sequences::Pipeline pipeline = sequences::make_pipeline(work.scene, work.layers, work.settings);
   sequences::PipelineState state(pipeline);
@@ -94,7 +94,7 @@ void Order(benchmark::State& run) {
     benchmark::DoNotOptimize(sequences::order_layers(pipeline, state, frame));
   }
 }
-BENCHMARK(Order)->Unit(benchmark::kMicrosecond);
+BENCHMARK(order_layers)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 }  // namespace talisman::tests

@@ -62,24 +62,24 @@ chunker::RenderOptions shaded(chunker::Shading shading) {
   return options;
 }
 
-void RenderGouraud(benchmark::State& state) {
+void render_gouraud(benchmark::State& state) {
   render_scene(state, workload(static_cast<int>(state.range(0))), shaded(chunker::Shading::Gouraud),
                state.range(1));
 }
-void RenderPhong(benchmark::State& state) {
+void render_phong(benchmark::State& state) {
   render_scene(state, workload(static_cast<int>(state.range(0))), shaded(chunker::Shading::Phong),
                state.range(1));
 }
 
 /// Nothing but filling: one textured, lit square over the whole display.
-void FillDisplay(benchmark::State& state) {
+void fill_display(benchmark::State& state) {
   layers::Scene scene = tests::textured_quad_scene();
   for (layers::vec3& p : scene.meshes[scene.parts[0].mesh].positions) p *= 4.0f;
   render_scene(state, scene, shaded(chunker::Shading::Gouraud), state.range(0));
 }
 
 /// What fewer samples of coverage save.
-void RenderSamples(benchmark::State& state) {
+void render_samples(benchmark::State& state) {
   chunker::RenderOptions options;
   options.samples = static_cast<int>(state.range(0));
   render_scene(state, workload(70000), options, 1);
@@ -104,7 +104,7 @@ layers::Scene thicket() {
   return scene;
 }
 
-void RenderThicketSamples(benchmark::State& state) {
+void render_thicket_samples(benchmark::State& state) {
   chunker::RenderOptions options;
   options.shading = chunker::Shading::Gouraud;
   options.samples = static_cast<int>(state.range(0));
@@ -112,14 +112,14 @@ void RenderThicketSamples(benchmark::State& state) {
 }
 
 /// What samples along the line of anisotropy cost.
-void RenderAnisotropic(benchmark::State& state) {
+void render_anisotropic(benchmark::State& state) {
   chunker::RenderOptions options;
   options.max_anisotropy = static_cast<int>(state.range(0));
   render_scene(state, workload(5000), options, 1);
 }
 
 /// What a shadow costs: the ball shadows itself; filter radius 0, 1, 3.
-void RenderShadowed(benchmark::State& state) {
+void render_shadowed(benchmark::State& state) {
   const layers::Scene scene = workload(70000);
   layers::ShadowMapOptions shadow;
   shadow.pcf_radius = static_cast<int>(state.range(0));
@@ -135,7 +135,7 @@ void RenderShadowed(benchmark::State& state) {
 }
 
 /// The map itself, by resolution.
-void DrawShadowMap(benchmark::State& state) {
+void draw_shadow_map(benchmark::State& state) {
   const layers::Scene scene = workload(70000);
   const layers::SceneFrame frame = scene.at(0);
   layers::ShadowMapOptions shadow;
@@ -146,17 +146,17 @@ void DrawShadowMap(benchmark::State& state) {
       benchmark::DoNotOptimize(chunker::make_shadow_map(frame, i, casters, shadow));
 }
 
-BENCHMARK(RenderSamples)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(RenderThicketSamples)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(RenderAnisotropic)->Arg(1)->Arg(2)->Arg(8)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(RenderShadowed)->Arg(0)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(DrawShadowMap)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(FillDisplay)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(RenderGouraud)
+BENCHMARK(render_samples)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(render_thicket_samples)->Arg(1)->Arg(4)->Arg(16)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(render_anisotropic)->Arg(1)->Arg(2)->Arg(8)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(render_shadowed)->Arg(0)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(draw_shadow_map)->Arg(256)->Arg(1024)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(fill_display)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(render_gouraud)
     ->ArgsProduct({{5000, 70000, 500000}, {1, 2}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
-BENCHMARK(RenderPhong)
+BENCHMARK(render_phong)
     ->ArgsProduct({{5000, 70000, 500000}, {1}})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();

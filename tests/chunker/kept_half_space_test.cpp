@@ -307,7 +307,7 @@ TEST(Reflections, EachPartLooksUpItsOwn) {
   const auto draw = [&](std::vector<Reflection> reflections) {
     ShadeInputs inputs = one;
     inputs.reflections = reflections;
-    const LinearImage image = shaded.linear(inputs, exact_options());
+    LinearImage image = shaded.linear(inputs, exact_options());
     expect_same(shaded.render(inputs, exact_options()).sprite, shaded.reference(inputs, exact_options()),
                 std::to_string(reflections.size()));
     return image;

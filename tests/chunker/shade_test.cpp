@@ -85,6 +85,7 @@ TEST(ShadeBatch, EqualsShadeBitByBit) {
       shade_batch(shader, t, *batch);
       for (int i = 0; i < batch->count; ++i) {
         const Float4 expected = shade(shader, t, batch->dx[i], batch->dy[i]);
+        // The same to the bit, signs of zero included. NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
         ASSERT_EQ(std::memcmp(&expected, &batch->color[i], sizeof(Float4)), 0)
             << "seed " << seed << " variant " << variant << " n " << n << " point " << i;
       }

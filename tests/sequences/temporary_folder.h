@@ -48,7 +48,7 @@ class TemporaryFolder {
   std::set<std::string> names() const { return names_in(path_); }
   /// Writes the file (and the folders above it); returns its full path.
   std::string write(const std::string& name, const std::string& content) const {
-    const std::string file = *this / name;
+    std::string file = *this / name;
     std::filesystem::create_directories(std::filesystem::path(file).parent_path());
     std::ofstream(file, std::ios::binary) << content;
     return file;

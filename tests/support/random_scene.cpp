@@ -243,7 +243,7 @@ std::string random_sequence_text(std::uint32_t seed) {
 }
 
 std::string write_random_sequence(std::uint32_t seed, const std::string& folder) {
-  const std::string file = folder + "/random_" + std::to_string(seed) + ".yaml";
+  std::string file = folder + "/random_" + std::to_string(seed) + ".yaml";
   std::ofstream(file) << random_sequence_text(seed);
   write_checker(folder);
   return file;

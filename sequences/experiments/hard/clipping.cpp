@@ -185,7 +185,8 @@ HardOutcome shared_edge() {
   int different = 0;
   for (int n = 0; n < 1000; ++n) {
     const auto any = [&](double depth) {
-      return sprite_point(random.uniform(-50, 50), random.uniform(-50, 50), depth);
+      const double x = random.uniform(-50, 50), y = random.uniform(-50, 50);
+      return sprite_point(x, y, depth);
     };
     const dvec3 a = any(random.log_uniform(0.2, 1e6)), b = any(-random.log_uniform(1e-6, 1e6));
     const auto cut_of = [&](const Corners& q) {
@@ -275,7 +276,7 @@ HardOutcome material_points_in_both_views(double scale) {
 void add_surfaces(std::vector<HardCase>& cases) {
   const auto add = [&](const char* name, const char* special, double extreme, HardRule rule,
                        std::function<HardOutcome()> measure) {
-    cases.push_back({HardStage::Clipping, name, special, extreme, std::move(rule), std::move(measure)});
+    cases.push_back({HardStage::Clipping, name, special, extreme, rule, std::move(measure)});
   };
   for (const double size : {1e-6, 50.0})
     add(size < 1 ? "in the plane, 1e-6" : "in the plane, 50", "200 triangles in the plane that cuts", size,

@@ -236,7 +236,7 @@ HardOutcome fewest_runs(int frames, double share_served) {
 void add_rules(std::vector<HardCase>& cases) {
   const auto add = [&](const char* name, const char* special, double extreme, HardRule rule,
                        std::function<HardOutcome()> measure) {
-    cases.push_back({HardStage::Regulator, name, special, extreme, std::move(rule), std::move(measure)});
+    cases.push_back({HardStage::Regulator, name, special, extreme, rule, std::move(measure)});
   };
   add("one ulp above", "thresholds 1e-9 ... 1e9 px, hit exactly", 1e18, {0, "decisions", "definition"},
       at_the_threshold);

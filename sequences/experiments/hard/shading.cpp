@@ -269,7 +269,7 @@ HardOutcome decision_side() {
 void add_surfaces_seen(std::vector<HardCase>& cases) {
   const auto add = [&](const char* name, const char* special, double extreme, HardRule rule,
                        std::function<HardOutcome()> measure) {
-    cases.push_back({HardStage::Shading, name, special, extreme, std::move(rule), std::move(measure)});
+    cases.push_back({HardStage::Shading, name, special, extreme, rule, std::move(measure)});
   };
   const HardRule wrong{0, "of the texels", "the nearer is seen"}, same{0, "code values", "slow renderer"};
   add("1e-5 apart", "two surfaces, the farther drawn first", 1e5, wrong,

@@ -208,7 +208,7 @@ HardOutcome umbra_of_two_hues(float brightness) {
 void add_lit(std::vector<HardCase>& cases) {
   const auto add = [&](const char* name, const char* special, double extreme, HardRule rule,
                        std::function<HardOutcome()> measure) {
-    cases.push_back({HardStage::Shadow, name, special, extreme, std::move(rule), std::move(measure)});
+    cases.push_back({HardStage::Shadow, name, special, extreme, rule, std::move(measure)});
   };
   const HardRule lit{0, "of the points", "all are lit"};
   add("floor on itself, 5 degrees", "a slanted caster is its own receiver", 11, lit,

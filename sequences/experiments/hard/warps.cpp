@@ -301,7 +301,7 @@ void add_largest(std::vector<HardCase>& cases) {
   against_ceres("per2i", "largest error after the divide", 1, Curve::per2i, box);
   against_ceres("isoi", "a scale for a box that turns", 1, Curve::isoi, box);
   const auto disc = [&](const char* name, const char* special, double extreme, double most,
-                        std::vector<dvec2> points) {
+                        const std::vector<dvec2>& points) {
     cases.push_back({HardStage::Warps,
                      name,
                      special,

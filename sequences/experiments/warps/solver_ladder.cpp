@@ -107,7 +107,7 @@ Solver deciding(Curve curve) {
 
 using PlaneFit = std::function<FitResult(std::span<const dvec2>, std::span<const dvec2>)>;
 
-Solver on_points(const std::string& name, Family family, PlaneFit fit, bool slow = false) {
+Solver on_points(const std::string& name, Family family, const PlaneFit& fit, bool slow = false) {
   return {name, family, -1, slow, true, [=](const LadderInput& input) -> ReadyFit {
             return [=, &input] { return fit(input.matched.then_px, input.matched.now_px); };
           }};

@@ -25,7 +25,7 @@ class Reader : public PictureReader {
   std::string read(float* samples) override { return read_as(OIIO::TypeDesc::FLOAT, samples); }
 
  private:
-  std::string read_as(OIIO::TypeDesc type, void* samples) {
+  std::string read_as(const OIIO::TypeDesc& type, void* samples) {
     if (input_->read_image(0, 0, 0, info_.channels, type, samples)) return "";
     const std::string why = input_->geterror();
     return why.empty() ? "cannot be read to its end" : why;
@@ -73,7 +73,7 @@ OpenedPicture open_bytes(std::span<const std::uint8_t> bytes, const std::string&
   return {std::make_unique<MemoryReader>(std::move(memory), std::move(input)), ""};
 }
 
-EncodedPicture encode(const std::string& name, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+EncodedPicture encode(const std::string& name, const OIIO::ImageSpec& spec, const OIIO::TypeDesc& type,
                       const void* samples) {
   EncodedPicture encoded;
   OIIO::Filesystem::IOVecOutput memory(encoded.bytes);

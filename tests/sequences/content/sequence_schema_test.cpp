@@ -76,6 +76,7 @@ TEST(SequenceSchema, ShippedSequencesPassBoth) {
 
 // --- A file that has everything ---
 
+// NOLINTBEGIN(bugprone-suspicious-missing-comma): a line of the file may take two of these
 const std::vector<std::string> kEveryKey = {
     /*1*/ "name: 2001",
     /*2*/ "frames: 48",
@@ -120,6 +121,7 @@ const std::vector<std::string> kEveryKey = {
     /*32*/ "placement: {slab_directions: 30, max_sprite_px: 32}",
     /*33*/ "compression: {quality: 100}",
     /*34*/ "clip_margin: 0"};
+// NOLINTEND(bugprone-suspicious-missing-comma)
 
 /// A folder with the files that kEveryKey names.
 class Folder {

@@ -24,6 +24,7 @@ using tests::message_of;
 using tests::TemporaryFolder;
 
 /// Line 1 … of a file that is right; tests change one line.
+// NOLINTBEGIN(bugprone-suspicious-missing-comma): a line of the file may take two of these
 const std::vector<std::string> kShadedLines = {
     /*1*/ "frames: 24",
     /*2*/ "shapes:",
@@ -52,6 +53,7 @@ const std::vector<std::string> kShadedLines = {
     /*20*/ "      second_blend: [{t: 0, value: 0.3}, {t: 0.5, value: 0.7}]",
     /*21*/ "  - {name: ball, parts: [ball], fade: 0.85, preferences: {motion_blur: 0.5}}",
     /*22*/ "compression: {quality: 70}"};
+// NOLINTEND(bugprone-suspicious-missing-comma)
 
 Sequence load_shaded(const TemporaryFolder& folder, const std::vector<std::string>& lines = kShadedLines) {
   for (const char* name : {"/a.png", "/b.png"})

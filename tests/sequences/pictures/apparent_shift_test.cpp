@@ -90,7 +90,9 @@ TEST(ApparentShift, AlongAStraightEdgeIsTheMotionAcross) {
 TEST(ApparentShift, WhatTheSpriteDoesNotHaveIsMissing) {
   chunker::Frame half = disc(0, 0);
   for (int y = 0; y < half.height; ++y)
-    for (int x = 100; x < half.width; ++x) half.pixels[static_cast<std::size_t>(y * half.width + x)] = {};
+    for (int x = 100; x < half.width; ++x)
+      half.pixels[static_cast<std::size_t>(y) * static_cast<std::size_t>(half.width) +
+                  static_cast<std::size_t>(x)] = {};
   EXPECT_NEAR(apparent_shift(half, disc(0, 0), 0).missing, 0.5, 0.03);
   EXPECT_EQ(apparent_shift(disc(0, 0), half, 0).missing, 0);
 }

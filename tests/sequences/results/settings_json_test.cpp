@@ -13,8 +13,9 @@ namespace {
 
 /// Stands for a value of any type in an aggregate initialisation.
 struct Any {
+  /// Never called: used in unevaluated expressions alone.
   template <typename T>
-  operator T() const;  // never called: used in unevaluated expressions alone
+  operator T() const;  // NOLINT(readability-identifier-naming)
 };
 
 /// The number of members of an aggregate: the most values by which it can be initialised.
