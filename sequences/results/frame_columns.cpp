@@ -30,7 +30,7 @@ FrameColumns counters() {
   return {counted(
               "frame", "", "number of the frame, from 0", [](auto& l) -> auto& { return l.frame; }),
           measured(
-              "frame_hash", "", "FNV-1a 64 of the linear picture, hexadecimal; null: not drawn",
+              "frame_hash", "", "XXH3-128 of the linear picture, hexadecimal; null: not drawn",
               [](auto& l) -> auto& { return l.frame_hash; }),
           counted(
               "layers_in_view", "layers", "that have a sprite in this frame",

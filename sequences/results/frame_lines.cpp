@@ -2,9 +2,11 @@
 #include "sequences/results/frame_lines.h"
 
 #include <algorithm>
-#include <cstdio>
+#include <cstdint>
+#include <span>
 
 #include "regulator/profile.h"
+#include "sequences/files/content_hash.h"
 #include "sequences/results/column_json.h"
 #include "sequences/results/column_tables.h"
 
@@ -41,16 +43,9 @@ const RowJson<FrameLine>& frame_json() {
 }  // namespace
 
 std::string hash_of(const chunker::Frame& picture) {
-  std::uint64_t hash = 1469598103934665603ull;
-  const auto add = [&hash](std::uint64_t byte) { hash = (hash ^ byte) * 1099511628211ull; };
-  for (const chunker::Linear16& p : picture.pixels)
-    for (const std::uint16_t channel : {p.r, p.g, p.b, p.a}) {
-      add(channel & 255u);
-      add(channel >> 8);
-    }
-  char text[24];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(hash));
-  return text;
+  static_assert(sizeof(chunker::Linear16) == 8);
+  const auto* bytes = reinterpret_cast<const std::uint8_t*>(picture.pixels.data());
+  return hash_of(std::span<const std::uint8_t>(bytes, 8 * picture.pixels.size())).hex();
 }
 
 FrameLine line_of(const FrameReport& report) {

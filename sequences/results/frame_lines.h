@@ -68,7 +68,7 @@ struct FrameTimes {
 /// One frame in numbers: what lines of frames.jsonl and timing.jsonl hold.
 struct FrameLine {
   int frame = 0;
-  std::string frame_hash;  ///< FNV-1a 64 of the linear picture, hexadecimal; empty when only planned
+  std::string frame_hash;  ///< XXH3-128 of the linear picture, hexadecimal; empty when only planned
   int layers_in_view = 0, renders = 0, reuses = 0, layers_assessed = 0;
   PassCounts passes;
   PolygonCounts polygons;
@@ -99,6 +99,7 @@ struct DecisionRow;  // results/column_tables.h
 std::string json_of(const DecisionRow& row);
 std::string json_of(const FrameReport& report, const regulator::LayerDecision& of_layer);
 
+/// Of its pixels, row by row, four numbers of 16 bits each, the low byte first.
 std::string hash_of(const chunker::Frame& picture);
 
 }  // namespace talisman::sequences
