@@ -102,6 +102,7 @@ std::string quoted(const char* what, const std::string& name) {
 }
 
 std::string light_of(const Scene& scene, int light) {
+  if (light < 0) return "all lights";
   const std::string& name = scene.lights[light].name;
   return name.empty() ? "light " + std::to_string(light) : quoted("light", name);
 }

@@ -20,6 +20,9 @@ namespace {
 
 constexpr double kMargin = 0.1;    ///< of the receiver's size: its characteristic points are not its outline
 constexpr double kGrazing = 1e-9;  ///< sine of the angle below which a ray is parallel to the surface
+/// Of a shadow without end: so many places along it, each so much nearer than the one behind it.
+constexpr int kPlacesOfRay = 24;
+constexpr double kNearerBy = 1.3;
 const dvec3 kNowhere(std::numeric_limits<double>::quiet_NaN());
 
 bool exists(const dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
@@ -96,7 +99,10 @@ class Receiver {
       if (is_highlight(layer_) && scene.lights[i].kind != Light::Kind::Ambient) add(traces, highlight(light));
     }
     if (mirrors(layer_) && plane_)
-      for (const int source : layer_.reflected) add(traces, reflection(source));
+      for (const int source : layer_.reflected) {
+        add(traces, reflection(source));
+        add_light_in_mirror(source, traces);
+      }
     return traces;
   }
 
@@ -119,7 +125,8 @@ class Receiver {
     const Plane plane = surface(light);
     const LightState& l = frame_.lights[light];
     bool before_surface = false;  // some of the caster is between the light and the receiver
-    for (const dvec3& c : states_[caster].world_points) {
+    const std::span<const dvec3> points = states_[caster].world_points;
+    for (const dvec3& c : points) {
       const dvec3 way = is_directional(light) ? l.direction : c - l.position;
       // A caster's point may lie behind a curved receiver's centre and still be part of what casts: rays of
       // directional lights are followed both ways.
@@ -129,8 +136,39 @@ class Receiver {
       before_surface = before_surface || (exists(place) && beyond < (plane_ ? 0 : radius_));
       trace.places.push_back(place);
     }
+    if (!is_directional(light)) before_surface |= add_endless(plane, l.position, points, trace.places);
     trace.on_receiver = before_surface && may_fall(light, set_.layers[caster]);
     return trace;
+  }
+
+  /// What rises above the light throws a shadow that does not end: along the edge from the nearest point with a shadow
+  /// of its own, b, to the point above, c, the shadow runs from that of b towards where the edge is as high as the light.
+  /// Places along it, as far as it can lie on the receiver. True if there is any.
+  bool add_endless(const Plane& plane, const dvec3& light, std::span<const dvec3> points,
+                   std::vector<dvec3>& places) const {
+    const std::size_t count = points.size();
+    const double up = glm::dot(plane.normal, light - plane.point) < 0 ? -1 : 1;
+    const auto height = [&](const dvec3& p) { return up * glm::dot(plane.normal, p - plane.point); };
+    bool any = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (exists(places[i]) || !(height(points[i]) > 0)) continue;
+      std::size_t below = count;
+      for (std::size_t k = 0; k < count; ++k)
+        if (exists(places[k]) &&
+            (below == count || glm::distance(points[k], points[i]) < glm::distance(points[below], points[i])))
+          below = k;
+      if (below == count) continue;
+      const dvec3 &b = points[below], &c = points[i];
+      const double share = (height(light) - height(b)) / (height(c) - height(b));
+      const dvec3 way = b + share * (c - b) - light;
+      double far = glm::distance(places[below], center_) + 2 * radius_;
+      for (int k = 0; k < kPlacesOfRay; ++k, far /= kNearerBy) {
+        const dvec3 place = places[below] + far / glm::length(way) * way;
+        any |= exists(place);
+        places.push_back(place);
+      }
+    }
+    return any;
   }
 
   /// Aggregates and what deforms have no tiles: their hulls stand for them.
@@ -165,12 +203,43 @@ class Receiver {
 
   ShadeTrace reflection(int source) const {
     ShadeTrace trace{ShadeTrace::Kind::Reflection, -1, source, true, {}};
-    const double eye_height = glm::dot(plane_->normal, eye_ - plane_->point);
-    for (const dvec3& c : states_[source].world_points) {
-      const bool before = glm::dot(plane_->normal, c - plane_->point) * eye_height > 0;
-      trace.places.push_back(before ? hit(*plane_, eye_, mirrored(*plane_, c)) : kNowhere);
-    }
+    for (const dvec3& c : states_[source].world_points) trace.places.push_back(in_mirror(c));
     return trace;
+  }
+
+  /// Where a place in the world is seen in the mirror.
+  dvec3 in_mirror(const dvec3& c) const {
+    const double eye_height = glm::dot(plane_->normal, eye_ - plane_->point);
+    const bool before = glm::dot(plane_->normal, c - plane_->point) * eye_height > 0;
+    return before ? hit(*plane_, eye_, mirrored(*plane_, c)) : kNowhere;
+  }
+
+  /// What lies on a mirrored layer and runs over it: its shadows, and where each light strikes it (what faces a light on a
+  /// sphere around it; of a spot where its axis meets the middle).
+  void add_light_in_mirror(int source, std::vector<ShadeTrace>& traces) const {
+    const Layer& layer = set_.layers[source];
+    if (!any_part(*frame_.scene, layer, is_lit) || states_[source].world_points.empty()) return;
+    const Receiver receiver(frame_, set_, states_, layer);
+    for (std::size_t i = 0; i < frame_.lights.size(); ++i) {
+      const int light = static_cast<int>(i);
+      if (frame_.lights[i].kind == Light::Kind::Ambient) continue;
+      add(traces, {ShadeTrace::Kind::Reflection, -1, source, true, {in_mirror(receiver.struck_by(light))}});
+      if (!looks_up_shadows(layer) || !frame_.scene->lights[i].casts_shadow) continue;
+      for (const int caster : layer.casters) {
+        ShadeTrace shadow = receiver.shadow(light, caster);
+        for (dvec3& place : shadow.places) place = in_mirror(place);
+        add(traces, {ShadeTrace::Kind::Reflection, -1, source, shadow.on_receiver, std::move(shadow.places)});
+      }
+    }
+  }
+
+  dvec3 struck_by(int light) const {
+    const LightState& l = frame_.lights[light];
+    const dvec3 ahead = to_light(light, center_);
+    if (l.kind == Light::Kind::Spot)
+      if (const dvec3 place = hit_along({center_, ahead}, l.position, l.direction); exists(place))
+        return place;
+    return center_ + radius_ * ahead;
   }
 
   /// Finishes a trace whose places are still in the world.

@@ -14,13 +14,15 @@
 ///
 /// in the space of the receiver, so that places stand still while light, eye, casters and receiver move
 /// together, and move only if a new picture would look different on the surface. A place that does not exist
-/// (the caster above the light, the mirrored point behind the mirror) is NaN. A trace is `on_receiver` where
+/// (the caster above the light, the mirrored point behind the mirror) is NaN. What is above the light throws a shadow
+/// without end: places along it, from the shadow of the nearest point below the light, stand behind the others. Of what a
+/// mirror shows, the shadows on it and where its lights strike it are seen as well. A trace is `on_receiver` where
 /// the bounds of its places, 10 % larger, meet those of the receiver, and a shadow only if it may fall there at
 /// all (layers/casting.h): the ground below a ball does not cast on it.
 ///
 /// Limits, stated: layers that deform are tracked in the space of their first part's node; only geometry's
-/// own highlights are left to the photometric fiducials; what changes inside a mirrored layer's picture (its
-/// shading, its own shadows) is seen by same_pixels but has no place.
+/// own highlights are left to the photometric fiducials; light that grows or fades on a mirrored layer where it is
+/// is seen by same_pixels but has no place.
 
 #include <span>
 

@@ -97,6 +97,18 @@ void import_pbr_gloss(const aiMaterial& from, layers::Material& to) {
   to.shininess = surface.shininess;
 }
 
+bool is_collada(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  return extension == ".dae" || extension == ".zae";
+}
+
+/// <lambert> has no highlight, and <constant> nothing but what it emits; assimp gives both its defaults.
+void import_collada_gloss(const aiMaterial& from, layers::Material& to) {
+  const int shading = property(from, AI_MATKEY_SHADING_MODEL, static_cast<int>(aiShadingMode_Phong));
+  if (shading == aiShadingMode_Gouraud || shading == aiShadingMode_NoShading) to.specular = layers::vec3(0);
+  if (shading == aiShadingMode_NoShading) to.base_color = layers::vec3(0);
+}
+
 void import_phong_gloss(const aiMaterial& from, layers::Material& to) {
   const float strength = clean(property(from, AI_MATKEY_SHININESS_STRENGTH, 1.0f), 0, 1, 1);
   to.specular = to_color(property(from, AI_MATKEY_COLOR_SPECULAR, aiColor4D(0, 0, 0, 1))) * strength;
@@ -123,6 +135,7 @@ layers::Material import_material(Import& import, const aiMaterial& from) {
     import_pbr_gloss(from, to);
   else
     import_phong_gloss(from, to);
+  if (is_collada(import.place.path)) import_collada_gloss(from, to);
   if (to.shininess < 1)
     to.specular = layers::vec3(0);  // such a highlight would cover the whole surface evenly
   return to;
@@ -149,11 +162,6 @@ void whiten_default(Import& import) {
     layers::Material& material = import.model.scene.materials[mesh->mMaterialIndex];
     if (material.name == AI_DEFAULT_MATERIAL_NAME) material.base_color = layers::vec3(1);
   }
-}
-
-bool is_collada(const std::string& path) {
-  const std::string extension = lower_extension(path);
-  return extension == ".dae" || extension == ".zae";
 }
 
 /// Some exporters of COLLADA write how transparent a material is, where the format asks how opaque: in their files

@@ -2,17 +2,21 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <istream>
 #include <iterator>
+#include <memory>
 #include <numbers>
 
 #include <glm/gtc/matrix_transform.hpp>
 #include <glm/gtc/quaternion.hpp>
 
 #include "sequences/import/assimp_scene.h"
+#include "sequences/import/collada_cameras.h"
 #include "sequences/import/exposure.h"
 #include "sequences/import/limits.h"
 #include "sequences/import/lower_case.h"
 #include "sequences/import/studio_cameras.h"
+#include "sequences/import/wide_text.h"
 
 namespace talisman::sequences {
 
@@ -230,8 +234,25 @@ double scale_below(const layers::Scene& scene, int node) {
   return scale;
 }
 
+/// Of COLLADA, what assimp does not hand on.
+void apply_collada(Import& import, const ColladaCamera& from, layers::Camera& camera) {
+  if (from.is_orthographic)
+    import.warn("camera '" + camera.name + "' is orthographic, and is drawn in perspective");
+  camera.fov_y_rad = from.fov_y_rad > 0 ? from.fov_y_rad : kDefaultFov_rad;
+  const double scale = scale_below(import.model.scene, camera.node);
+  if (from.near_m && from.far_m && *from.near_m > 0 && *from.far_m > *from.near_m)
+    camera.near_m = scale * *from.near_m, camera.far_m = scale * *from.far_m;
+}
+
+std::vector<ColladaCamera> collada_cameras_of(const Import& import) {
+  if (lower_extension(import.place.path) != ".dae" || import.from.mNumCameras == 0) return {};
+  const std::unique_ptr<std::istream> in = open_text(import.place.path);
+  return collada_cameras(std::string{std::istreambuf_iterator<char>(*in), {}});
+}
+
 void import_cameras(Import& import) {
   if (is_studio(import.place.path)) return import_studio_cameras(import);
+  const std::vector<ColladaCamera> of_collada = collada_cameras_of(import);
   for (unsigned i = 0; i < import.from.mNumCameras; ++i) {
     const aiCamera* from = import.from.mCameras[i];
     if (!from) continue;
@@ -246,6 +267,11 @@ void import_cameras(Import& import) {
         from->mClipPlaneNear == 0.1f && from->mClipPlaneFar == 1000.0f;  // assimp's defaults
     if (!says_nothing && near_m > 0 && far_m > near_m && std::isfinite(far_m))
       camera.near_m = near_m, camera.far_m = far_m;
+    for (const ColladaCamera& of_file : of_collada)
+      if (of_file.node == camera.name || of_collada.size() == 1) {
+        apply_collada(import, of_file, camera);
+        break;
+      }
     import.model.scene.cameras.push_back(camera);
   }
 }

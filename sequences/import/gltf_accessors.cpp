@@ -111,6 +111,9 @@ void read_view(GltfFile& file, const Json& accessor, const Layout& layout, Acces
   if (index < 0) return;  // zeros
   const auto bytes = bytes_of_view(file, index);
   const int given = index_of(item_of(file, "bufferViews", index), "byteStride");
+  if (given > 0 && static_cast<std::size_t>(given) < layout.element_bytes)
+    throw InputError("glTF: byteStride " + std::to_string(given) + ", rule: at least the " +
+                     std::to_string(layout.element_bytes) + " bytes of an element");
   const std::size_t stride = given > 0 ? static_cast<std::size_t>(given) : layout.element_bytes;
   const std::size_t offset = offset_of(accessor);
   check_range(bytes.size(), offset, result.count, stride, layout.element_bytes);

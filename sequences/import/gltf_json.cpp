@@ -101,6 +101,9 @@ void check_version(const Json& json) {
   const std::string version = text_of(object_of(json, "asset"), "version", "?");
   if (version.rfind("2.", 0) != 0)
     throw InputError("cannot be read as a model: it is glTF version " + version + ", rule: 2");
+  const std::string least = text_of(object_of(json, "asset"), "minVersion", "2.0");
+  if (least != "2.0")
+    throw InputError("cannot be read as a model: it wants a reader of glTF " + least + ", rule: 2.0");
 }
 
 void check_required(const Json& json) {

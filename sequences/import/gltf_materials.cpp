@@ -218,11 +218,20 @@ class Reading {
     const auto base = numbers_of(pbr, factor, 4, {1, 1, 1, 1});
     to_.base_color = color_of(base);
     const Json& info = object_of(pbr, map);
-    const std::string mode = text_of(from_, "alphaMode", "OPAQUE");
+    const std::string mode = alpha_mode();
     to_.texture = textures_.of(info, mode == "OPAQUE");
     maps_.base = coordinates_of(info);
     maps_.has_base_map = to_.texture >= 0;
     set_alpha(mode, std::clamp(base[3], 0.0, 1.0));
+  }
+
+  /// Where everything passes the cutoff, nothing is cut.
+  std::string alpha_mode() const {
+    const std::string mode = text_of(from_, "alphaMode", "OPAQUE");
+    if (mode != "OPAQUE" && mode != "MASK" && mode != "BLEND")
+      throw InputError("glTF: alphaMode '" + mode + "' of material '" + to_.name +
+                       "', rule: OPAQUE, MASK or BLEND");
+    return mode == "MASK" && number_of(from_, "alphaCutoff", 0.5) <= 0 ? "OPAQUE" : mode;
   }
 
   /// alpha = factor · texture · vertices; MASK compares it with the cutoff, so what is compared with is divided.
@@ -230,7 +239,6 @@ class Reading {
     to_.opacity = mode == "BLEND" ? static_cast<float>(factor) : 1;
     if (mode != "MASK") return;
     const double cutoff = number_of(from_, "alphaCutoff", 0.5);
-    if (cutoff <= 0) return;
     if (factor < cutoff)
       to_.opacity = 0;
     else
@@ -278,7 +286,7 @@ class Reading {
       maps.occlusion = nullptr;
     }
     if (!maps.metallic && !maps.occlusion) return false;
-    const bool opaque = text_of(from_, "alphaMode", "OPAQUE") == "OPAQUE";
+    const bool opaque = alpha_mode() == "OPAQUE";
     const std::string combination = pbr.dump() + shades.dump() + (opaque ? "opaque" : "");
     const int texture = textures_.baked(combination, opaque, maps);
     if (texture < 0) return true;

@@ -89,12 +89,13 @@ void read_colors(GltfImport& import, const Json& attributes, bool opaque, layers
 /// The four largest of all influences of each vertex, of every set JOINTS_n, WEIGHTS_n.
 void read_influences(GltfImport& import, const Json& attributes, layers::Mesh& mesh) {
   const std::size_t n = mesh.positions.size();
+  bool left_out = false;
   for (int set = 0; set < 16; ++set) {
     const std::string joints_name = "JOINTS_" + std::to_string(set),
                       weights_name = "WEIGHTS_" + std::to_string(set);
     const int joints_at = index_of(attributes, joints_name.c_str()),
               weights_at = index_of(attributes, weights_name.c_str());
-    if (joints_at < 0 || weights_at < 0) return;
+    if (joints_at < 0 || weights_at < 0) break;
     const Accessed joints = read_accessor(import.file, joints_at, joints_name.c_str(), 4);
     const Accessed weights = read_accessor(import.file, weights_at, weights_name.c_str(), 4);
     check_count(joints_name.c_str(), joints, n);
@@ -106,11 +107,13 @@ void read_influences(GltfImport& import, const Json& attributes, layers::Mesh& m
         layers::vec4& own = mesh.weights[i];
         const int least = static_cast<int>(std::min_element(&own[0], &own[0] + 4) - &own[0]);
         const auto weight = static_cast<float>(weights.at(i, k));
+        left_out |= std::min(weight, own[least]) > 0;
         if (!(weight > own[least])) continue;
         own[least] = weight;
         mesh.joints[i][least] = static_cast<unsigned>(joints.at(i, k));
       }
   }
+  if (left_out) import.lacks("of more than four joints of a vertex the weakest are left out");
 }
 
 std::vector<std::uint32_t> read_indices(GltfImport& import, const Json& primitive, std::size_t vertices) {
@@ -154,6 +157,9 @@ void read_morphs(GltfImport& import, const Json& primitive, layers::Mesh& mesh) 
     if (at >= 0 && !mesh.normals.empty())
       morph.normals = vectors_of(import, at, "NORMAL of a morph target", n);
     mesh.morphs.push_back(std::move(morph));
+    for (const auto& [name, accessor] : target.items())
+      if (name.rfind("COLOR_", 0) == 0 || name.rfind("TEXCOORD_", 0) == 0)
+        import.lacks("colours and texture coordinates of morph targets are not moved");
   }
 }
 

@@ -19,6 +19,7 @@
 #include "sequences/import/ear_clipping.h"
 #include "sequences/import/lower_case.h"
 #include "sequences/import/obj_libraries.h"
+#include "sequences/import/obj_text.h"
 #include "sequences/import/wide_text.h"
 #include "sequences/pictures/srgb.h"
 
@@ -37,6 +38,8 @@ struct ObjWords {
   std::vector<std::string> libraries;  ///< what is behind each "mtllib"
   std::vector<std::string> materials;  ///< in the order of their first use
   std::map<std::string, int> id_of;    ///< by the first word, as the geometry's reader has it
+  bool has_smoothing = false;          ///< it says somewhere what is smooth, or that nothing is
+  std::vector<std::string> losses;     ///< what it has and the picture has not
   std::map<std::size_t, std::size_t>
       large_faces;  ///< corners of those that have more than the reader can count
 };
@@ -69,15 +72,25 @@ void check_numbers(const std::string& line) {
     throw InputError("a mesh has '" + line.substr(0, 60) + "', rule: finite numbers");
 }
 
+/// Free-form geometry.
+bool is_curve(const std::string& line, std::size_t at) {
+  const std::string word = line.substr(at, std::min(line.find_first_of(" \t", at), line.size()) - at);
+  return word == "vp" || word == "curv" || word == "curv2" || word == "surf";
+}
+
 ObjWords words_of(const std::string& path) {
   ObjWords words;
-  const std::unique_ptr<std::istream> in = open_text(path);
+  ObjText text(open_text(path));
+  std::istream in(&text);
   std::size_t faces = 0;
-  for (std::string line; std::getline(*in, line);) {
+  bool has_curves = false;
+  for (std::string line; std::getline(in, line);) {
     const std::size_t at = line.find_first_not_of(" \t");
     if (at == std::string::npos) continue;
     if (line[at] == 'v') check_numbers(line);
     if (line[at] == 'f') count_face(line, at + 1, faces, words);
+    if (line[at] == 's' && line.find_first_of(" \t", at) == at + 1) words.has_smoothing = true;
+    if (line[at] != 'f' && !has_curves) has_curves = is_curve(line, at);
     if (line[at] != 'm' && line[at] != 'u') continue;
     if (line.compare(at, 6, "mtllib") == 0) words.libraries.push_back(rest_of_line(line, at + 6));
     if (line.compare(at, 6, "usemtl") != 0) continue;
@@ -86,10 +99,12 @@ ObjWords words_of(const std::string& path) {
     if (words.id_of.emplace(first, static_cast<int>(words.materials.size())).second)
       words.materials.push_back(name);
   }
+  if (has_curves) words.losses.emplace_back("curves and surfaces are not drawn");
   return words;
 }
 
-/// Gives every material that is used its number, whatever its library says.
+/// Gives every material that is used its number, whatever its library says. It is asked at the first "mtllib", which
+/// therefore is put before all else.
 class NumberMaterials : public tinyobj::MaterialReader {
  public:
   explicit NumberMaterials(const ObjWords& words) : words_(words) {}
@@ -106,7 +121,7 @@ class NumberMaterials : public tinyobj::MaterialReader {
 struct ObjContent {
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;  ///< of triangles
-  bool has_groups = false;               ///< smoothing groups
+  bool has_groups = false;               ///< it says what is smooth: what is in no group is flat
 };
 
 dvec3 place_of(const tinyobj::attrib_t& attributes, int vertex) {
@@ -160,23 +175,24 @@ tinyobj::mesh_t in_triangles(tinyobj::mesh_t polygons, const std::vector<std::si
 
 ObjContent content_of(const std::string& path, const ObjWords& words) {
   ObjContent content;
-  const std::unique_ptr<std::istream> in = open_text(path);
-  if (!*in) throw InputError("cannot be opened");
+  auto file = open_text(path);
+  if (!*file) throw InputError("cannot be opened");
+  ObjText text(std::move(file), "mtllib -");
+  std::istream in(&text);
   NumberMaterials numbers(words);
   std::vector<tinyobj::material_t> unused;
   std::string warning, error;
-  if (!tinyobj::LoadObj(&content.attributes, &content.shapes, &unused, &warning, &error, in.get(), &numbers,
-                        false, false))
+  if (!tinyobj::LoadObj(&content.attributes, &content.shapes, &unused, &warning, &error, &in, &numbers, false,
+                        false))
     throw InputError("cannot be read as a model: " + error.substr(0, error.find('\n')));
   check_corners(content);
+  content.has_groups = words.has_smoothing;
   std::size_t face = 0;
   for (tinyobj::shape_t& shape : content.shapes) {
     const std::vector<std::size_t> counts = corner_counts(shape.mesh, face, words);
     face += counts.size();
     shape.mesh = in_triangles(std::move(shape.mesh), counts, content.attributes);
   }
-  for (const tinyobj::shape_t& shape : content.shapes)
-    for (const unsigned group : shape.mesh.smoothing_group_ids) content.has_groups |= group > 0;
   return content;
 }
 
@@ -407,6 +423,7 @@ ImportedModel read_obj(const ModelPlace& place) {
   ImportedModel model;
   warn_of_losses(content, model);
   std::vector<std::string> losses = std::move(model.warnings);
+  losses.insert(losses.end(), words.losses.begin(), words.losses.end());
   const std::vector<int> numbers =
       materials_of(model, place, words, !content.attributes.colors.empty(), files);
   model.warnings.insert(model.warnings.begin(), losses.begin(), losses.end());
