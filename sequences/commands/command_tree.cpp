@@ -27,12 +27,13 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   app_.require_subcommand(1);
   app_.set_version_flag("--version", version_text, "version, commit, effects built, instruction set");
   add_runs(stop);
+  add_explain();
   add_inspect();
   add_diff();
   add_exports();
   add_warps();
   add_accuracy();
-  for (const char* command : {"render", "plan", "audit", "inspect", "warps", "accuracy"})
+  for (const char* command : {"render", "plan", "audit", "explain", "inspect", "warps", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
 }
 
@@ -51,6 +52,24 @@ void CommandTree::add_runs(const std::atomic<bool>& stop) {
   add_run_options(*audit, line_);
   add_audit_options(*audit, line_);
   audit->callback([this, &stop] { exit_code_ = run_audit(line_, stop, std::cout); });
+}
+
+void CommandTree::add_explain() {
+  CLI::App* command = app_.add_subcommand(
+      "explain", "why a layer was drawn in a frame, or was not: every fiducial against its limit");
+  OptionGroup(*command, "Which")
+      .option("--frame", explain_.frame, "number of the frame, from 0; required")
+      .option(
+          "--layer", explain_.layer,
+          "name of a layer, of a merged one, or of a shadow map: all that is known of it, with a picture");
+  add_decision_options(*command, explain_.line);
+  command->callback([this, command] {
+    for (const CLI::Option* option : command->get_options())
+      if (option->count() > 0 && option->get_positional() == false && option->get_name() != "--frame" &&
+          option->get_name() != "--layer")
+        explain_.others.push_back(option->get_name());
+    exit_code_ = run_explain(explain_, std::cout);
+  });
 }
 
 void CommandTree::add_inspect() {

@@ -10,6 +10,7 @@
 #include "sequences/commands/accuracy.h"
 #include "sequences/commands/cache_options.h"
 #include "sequences/commands/diff_command.h"
+#include "sequences/commands/explain.h"
 #include "sequences/commands/export_command.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
@@ -32,6 +33,7 @@ class CommandTree {
 
  private:
   void add_runs(const std::atomic<bool>& stop);
+  void add_explain();
   void add_inspect();
   void add_diff();
   void add_exports();
@@ -40,6 +42,7 @@ class CommandTree {
 
   CLI::App app_;
   CommandLine line_;
+  ExplainOptions explain_;
   InspectOptions inspect_;
   DiffOptions diff_;
   ExportOptions export_;

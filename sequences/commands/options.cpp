@@ -198,6 +198,7 @@ RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, boo
     std::tie(options.first_frame, options.last_frame) = frame_range_from(line.frames, sequence.frames);
   options.format = choice("--format", line.format, kFormatWords);
   options.progress = choice("--progress", line.progress, kProgressWords);
+  if (line.quiet) options.progress = ProgressKind::None;
   options.video = line.video;
   options.separate = line.separate;
   options.overlay = line.overlay;

@@ -41,6 +41,7 @@ struct CommandLine {
   bool video = false, separate = false, overlay = false, quality = false, resume = false;
   std::optional<int> audit;  ///< every so many reuses; `talisman audit` writes no pictures of frames
   bool audit_alone = false;
+  bool quiet = false;  ///< no progress, no table
   bool force = false;  ///< take a folder that holds other files
   ContentWords content;
 };

@@ -11,6 +11,7 @@
 
 #include "sequences/files/errors.h"
 #include "sequences/files/quoted.h"
+#include "sequences/results/advice.h"
 
 namespace talisman::sequences {
 
@@ -42,6 +43,14 @@ std::vector<std::string> what_is_not_seen(const Summary& summary, const std::str
   return {file + ": no layer is in view in any frame"};
 }
 
+std::string advice_text(const Sequence& sequence, const ResolvedRun& run, const Summary& summary) {
+  std::string text;
+  const FrameRange range{run.options.first_frame, run.options.last_frame};
+  for (const std::string& line : advice_for(sequence, run.settings, range, summary))
+    text += (text.empty() ? "  it saves little   " : "                    ") + line + "\n";
+  return text.empty() ? text : "\n" + text;
+}
+
 }  // namespace
 
 int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool>& stop, std::ostream& out) {
@@ -62,9 +71,11 @@ int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool
   const std::vector<std::string> unseen = what_is_not_seen(outcome.summary, sequence.file);
   say(unseen);
   require_none(unseen, line.content.strict, sequence.file);
+  if (line.quiet) return kSuccess;
   if (outcome.frames_kept > 0)
     out << "kept " << outcome.frames_kept << " complete frames of an earlier run\n";
-  out << table_of(outcome.summary) << "\nresults in " << resolved.options.out << "\n";
+  out << table_of(outcome.summary) << advice_text(sequence, resolved, outcome.summary) << "\nresults in "
+      << resolved.options.out << "\n";
   return kSuccess;
 }
 

@@ -14,16 +14,21 @@ namespace {
 const std::string kProgressMeaning = alternatives(kProgressWords);
 const std::string kBoundMeaning = "characteristic polyhedron: " + alternatives(kBoundWords);
 
-void add_run(CLI::App& command, CommandLine& line) {
+void add_sequence(CLI::App& command, CommandLine& line) {
   command
       .add_option("sequence", line.sequence, "name of a sequence, path of its YAML file, or path of a model")
       ->required();
+}
+
+void add_run(CLI::App& command, CommandLine& line) {
+  add_sequence(command, line);
   OptionGroup(command, "Run")
       .option("--out", line.out, "result folder (out/<name>; plans: out/<name>-plan)")
       .option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run")
       .option("--size", line.size, "display, WxH pixels")
       .option("--threads", line.threads, "worker threads; 0: all cores. The bytes do not depend on it")
       .option("--progress", line.progress, kProgressMeaning)
+      .flag("--quiet", line.quiet, "no progress and no table; warnings and errors alone")
       .flag("--force", line.force, "write into --out though it holds files that are not of a run");
 }
 
@@ -119,6 +124,15 @@ void add_decisions(CLI::App& command, CommandLine& line) {
 
 void add_run_options(CLI::App& command, CommandLine& line) {
   add_run(command, line);
+  add_content_options(command, line.content);
+  add_decisions(command, line);
+}
+
+void add_decision_options(CLI::App& command, CommandLine& line) {
+  add_sequence(command, line);
+  OptionGroup(command, "Run")
+      .option("--out", line.out, "folder of the pictures (out/<name>-explain)")
+      .option("--size", line.size, "display, WxH pixels");
   add_content_options(command, line.content);
   add_decisions(command, line);
 }

@@ -18,6 +18,8 @@ namespace talisman::sequences {
 void add_run_options(CLI::App& command, CommandLine& line);
 /// Those about content, which every command has that opens it.
 void add_content_options(CLI::App& command, ContentWords& words);
+/// Those of `explain`: what decides, and where its pictures go.
+void add_decision_options(CLI::App& command, CommandLine& line);
 /// The further options of `render`.
 void add_audit_options(CLI::App& command, CommandLine& line);
 void add_picture_options(CLI::App& command, CommandLine& line);

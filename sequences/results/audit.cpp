@@ -10,51 +10,11 @@
 #include "sequences/pictures/flip.h"
 #include "sequences/pictures/picture_sheet.h"
 #include "sequences/pictures/quality.h"
-#include "sequences/pipeline/layer_planning.h"
-#include "sequences/pipeline/shade_passes.h"
+#include "sequences/results/layer_alone.h"
 
 namespace talisman::sequences {
 
 namespace {
-
-chunker::Frame alone(const chunker::PlacedSprite& sprite, layers::ivec2 display_px) {
-  chunker::Frame frame{display_px.x, display_px.y, {}};
-  frame.pixels.resize(static_cast<std::size_t>(display_px.x) * static_cast<std::size_t>(display_px.y));
-  chunker::composite_onto(frame, {&sprite, 1});
-  return frame;
-}
-
-chunker::PlacedSprite placed(const chunker::Sprite& sprite, const layers::dmat3& screen_from_sprite,
-                             const SpriteMultipliers& multipliers) {
-  return {&sprite, screen_from_sprite, multipliers.color, multipliers.alpha};
-}
-
-/// The layer as `reference` shows it in this frame.
-chunker::Frame drawn_fresh(const Pipeline& pipeline, PipelineState& state, const FrameReport& report,
-                           int layer, const chunker::PreparedScene& prepared) {
-  const layers::SceneFrame now = scene_at(pipeline, report.frame);
-  const layers::LayerState& layer_state = captured_states(pipeline, state, report.frame)[layer];
-  const layers::SpritePlacement placement = placement_without_growth(pipeline, report.layers, layer_state);
-  ShadowMapStore maps;
-  const chunker::RenderResult result =
-      draw_layer({pipeline, report.layers, maps, prepared, now}, report.layers[layer], placement);
-  return alone(placed(result.sprite, layers::to_mat3(placement.screen_from_sprite),
-                      multipliers_at(report.layers[layer], time_of(pipeline, report.frame))),
-               pipeline.settings.view.display_px);
-}
-
-/// Over grey, so that black and white silhouettes are seen.
-Image8 over_grey(chunker::Frame frame, const Crop& crop) {
-  constexpr std::uint32_t kGrey = chunker::kOne / 5;
-  for (chunker::Linear16& p : frame.pixels) {
-    const std::uint32_t behind = kGrey * (chunker::kOne - p.a) / chunker::kOne;
-    const auto add = [behind](std::uint16_t c) {
-      return static_cast<std::uint16_t>(std::min(c + behind, chunker::kOne));
-    };
-    p = {add(p.r), add(p.g), add(p.b), static_cast<std::uint16_t>(chunker::kOne)};
-  }
-  return cropped(to_image8(frame), crop);
-}
 
 /// Both pictures of a reuse, over grey.
 struct Pictures {
@@ -141,9 +101,8 @@ void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameRe
     const chunker::Sprite* old = state.sprites.find(sprite.layer);
     if (!old) continue;
     const layers::ivec2 display_px = pipeline.settings.view.display_px;
-    const chunker::Frame shown =
-        alone(placed(*old, sprite.screen_from_sprite, sprite.multipliers), display_px);
-    const chunker::Frame fresh = drawn_fresh(pipeline, state, report, sprite.layer, prepared);
+    const chunker::Frame shown = shown_alone(*old, sprite.screen_from_sprite, sprite.multipliers, display_px);
+    const chunker::Frame fresh = fresh_alone(pipeline, state, report, sprite.layer, prepared);
     const ApparentShift seen = apparent_shift(shown, fresh, decision.shown_geometric_px);
     const fiducials::Photometric& light = report.assessments[sprite.layer].fiducials.photometric;
     Pictures pictures;

@@ -40,6 +40,7 @@ std::vector<DecisionRow> decision_rows(const PipelineState& state, const FrameRe
 struct LayerRow {
   const LayerSummary& layer;
   int frames = 0;  ///< of the run
+  double share_of_cost = 0;
 };
 
 struct EffectRow {

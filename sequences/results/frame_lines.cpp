@@ -2,6 +2,7 @@
 #include "sequences/results/frame_lines.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -59,11 +60,17 @@ FrameLine line_of(const FrameReport& report) {
     line.pixels.rendered += d.cost.pixels;
     line.layers_in_view += d.action != regulator::Action::Drop;
   }
+  const double sprite_pixels = static_cast<double>(line.pixels.rendered);
   line.passes = {report.shade.shadow_maps_drawn, report.shade.shadow_maps_reused,
                  report.shade.reflections_drawn};
   line.polygons.rendered += report.shade.shadow_polygons;
   line.pixels.rendered += report.shade.shadow_pixels;
   line.depth_complexity = report.depth_complexity;
+  line.modelled_render_ms =
+      regulator::modelled_time(
+          regulator::talisman_1996(), line.polygons.rendered,
+          std::llround(sprite_pixels * line.depth_complexity) + report.shade.shadow_pixels, 0)
+          .render_ms;
   line.polygons.reference = report.reference.polygons;
   line.pixels.reference = report.reference.pixels;
   line.times.plan_ms = report.times.plan_ms;

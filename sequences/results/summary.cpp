@@ -2,8 +2,10 @@
 #include "sequences/results/summary.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
+#include "regulator/profile.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/run_effects.h"
 #include "sequences/results/column_json.h"
@@ -37,9 +39,8 @@ bool is_drawn_with(const layers::EffectCall& effect, const layers::Layer& layer)
 Json layers_json(const Summary& s) {
   static const RowJson<LayerRow> writer(layer_table());
   Json json = Json::array();
-  for (const auto* rows : {&s.layers, &s.shadow_maps})
-    for (const LayerSummary& layer : *rows)
-      json.push_back(writer.write({layer, static_cast<int>(s.frames.size())}));
+  for (const LayerSummary* row : s.rows())
+    json.push_back(writer.write({*row, static_cast<int>(s.frames.size()), s.share_of_cost(*row)}));
   return json;
 }
 
@@ -56,6 +57,21 @@ Json audit_json(const Summary& s) {
   Json json = Json::array();
   for (const LayerAudit& layer : s.audit) json.push_back(writer.write(layer));
   return json;
+}
+
+/// Modelled time of drawing this much alone, the measure of a row's share: polygons or pixels, whichever take longer.
+/// The pixels of sprites are filled as often as a budget of milliseconds takes them to be.
+double render_ms(std::int64_t polygons, double pixels) {
+  return regulator::modelled_time(regulator::talisman_1996(), polygons, std::llround(pixels), 0).render_ms;
+}
+
+/// The row of this name; made where there is none.
+LayerSummary& row_of_name(std::vector<LayerSummary>& rows, const std::string& name, int parts, int polygons) {
+  const auto found =
+      std::find_if(rows.begin(), rows.end(), [&](const auto& row) { return row.name == name; });
+  if (found != rows.end()) return *found;
+  rows.push_back(row_of(name, parts, polygons, false));
+  return rows.back();
 }
 
 /// What a frame in which it is shown adds to its row, but for the renders.
@@ -75,18 +91,33 @@ void add_decision(const regulator::LayerDecision& d, layers::ivec2 size_px, Laye
 bool add_shadow_maps(Summary& summary, const FrameReport& report) {
   bool any_deferred = false;
   for (const ShadowMapRow& map : report.shadow_maps) {
-    auto row = std::find_if(summary.shadow_maps.begin(), summary.shadow_maps.end(),
-                            [&](const LayerSummary& r) { return r.name == map.name; });
-    if (row == summary.shadow_maps.end()) {
-      const int polygons = static_cast<int>(map.assessment.cost.polygons);
-      row = summary.shadow_maps.insert(row, row_of(map.name, map.parts, polygons, false));
-      row->is_shadow_map = true;
-    }
-    row->renders += map.pictures;
-    if (map.decision.action != regulator::Action::Drop) add_decision(map.decision, map.size_px, *row);
+    LayerSummary& row =
+        row_of_name(summary.shadow_maps, map.name, map.parts, static_cast<int>(map.assessment.cost.polygons));
+    row.is_shadow_map = true;
+    row.renders += map.pictures;
+    if (map.decision.action != regulator::Action::Drop) add_decision(map.decision, map.size_px, row);
+    const regulator::LayerCost& cost = map.decision.cost;
+    row.render_ms += render_ms(cost.polygons, static_cast<double>(cost.pixels));
+    if (map.pictures > 0) row.reasons.add(map.decision.reason);
     any_deferred = any_deferred || map.decision.deferred;
   }
   return any_deferred;
+}
+
+/// A render of a layer: its sprite, and the pictures that it mirrors, which its cost holds.
+void add_render(const regulator::LayerDecision& d, const layers::Layer& drawn, layers::ivec2 size_px,
+                const FrameReport& report, LayerSummary& layer, Summary& summary) {
+  ++layer.renders;
+  layer.reasons.add(d.reason);
+  const double filled = report.depth_complexity;
+  const int mirrors = static_cast<int>(mirrors_in(report.layers.set(), drawn).size());
+  const std::int64_t own_pixels = mirrors > 0 ? std::int64_t{size_px.x} * size_px.y : d.cost.pixels;
+  layer.render_ms += render_ms(d.cost.polygons, filled * static_cast<double>(own_pixels));
+  if (mirrors == 0) return;
+  LayerSummary& row = row_of_name(summary.mirrors, "mirrored by " + drawn.name, 0, 0);
+  row.is_mirror = true;
+  row.renders += mirrors;
+  row.render_ms += render_ms(0, filled * static_cast<double>(d.cost.pixels - own_pixels));
 }
 
 }  // namespace
@@ -126,14 +157,28 @@ void add_decisions(Summary& summary, const FrameReport& report, const PipelineSt
     add_decision(d, state.memory[d.layer].placement.size_px, layer);
     any_deferred = any_deferred || d.deferred;
     if (d.action != regulator::Action::Rerender) continue;
-    ++layer.renders;
-    layer.is_capped |= state.memory[d.layer].placement.resolution_reduced;
+    const layers::SpritePlacement& placement = state.memory[d.layer].placement;
+    layer.is_capped |= placement.resolution_reduced;
     const layers::Layer& drawn = report.layers[d.layer];
+    add_render(d, drawn, placement.size_px, report, layer, summary);
     for (const int member : drawn.members) ++summary.layers[member].merged_renders;
     for (std::size_t e = 0; e < summary.effects.size(); ++e)
       summary.effect_passes[e] += is_drawn_with(summary.effects[e], drawn);
   }
   summary.frames_deferred += any_deferred;
+}
+
+std::vector<const LayerSummary*> Summary::rows() const {
+  std::vector<const LayerSummary*> all;
+  for (const auto* kind : {&layers, &shadow_maps, &mirrors})
+    for (const LayerSummary& row : *kind) all.push_back(&row);
+  return all;
+}
+
+double Summary::share_of_cost(const LayerSummary& row) const {
+  double all = 0;
+  for (const LayerSummary* each : rows()) all += each->render_ms;
+  return all > 0 ? row.render_ms / all : 0;
 }
 
 double Summary::mean_update_rate() const {

@@ -13,6 +13,7 @@
 #include "sequences/pipeline/pipeline.h"
 #include "sequences/results/audit.h"
 #include "sequences/results/frame_lines.h"
+#include "sequences/results/reason_tally.h"
 
 namespace talisman::sequences {
 
@@ -29,6 +30,9 @@ struct LayerSummary {
   bool is_capped = false;         ///< a sprite had fewer texels than asked for, by max_sprite_px
   bool is_aggregate = false;      ///< counted with its members where rates are averaged
   bool is_shadow_map = false;     ///< not counted where rates are averaged
+  bool is_mirror = false;         ///< likewise: the pictures that a layer mirrors, drawn with its sprite
+  double render_ms = 0;           ///< modelled (results/summary.cpp), of its renders
+  ReasonTally reasons{};          ///< of its renders
   int frames_deferred = 0;        ///< worth drawing, but the budget did not suffice
   int frames_over_budget = 0;     ///< of these: dearer than the whole budget
   double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
@@ -56,6 +60,7 @@ struct Summary {
   bool planned_only = false;
   std::vector<LayerSummary> layers;
   std::vector<LayerSummary> shadow_maps;  ///< behind the layers in the tables
+  std::vector<LayerSummary> mirrors;      ///< behind these: "mirrored by floor"
   int frames_deferred = 0;                ///< in which something was put off for want of budget
   std::vector<layers::EffectCall> effects;
   /// One per entry of `effects`: renders of layers that use it; for shadow maps the maps drawn.
@@ -63,6 +68,10 @@ struct Summary {
   std::vector<FrameLine> frames;
   std::vector<LayerAudit> audit;  ///< with --audit: the layers that were reused
 
+  /// Of the layers, the shadow maps and the mirrors, as tables have them.
+  std::vector<const LayerSummary*> rows() const;
+  /// Of a row in all of them, 0 … 1; 0 where nothing was drawn.
+  double share_of_cost(const LayerSummary& row) const;
   /// Over the author's layers; a render of an aggregate counts for each of its members.
   double mean_update_rate() const;
   double cost_weighted_update_rate() const;  ///< weighted by polygons

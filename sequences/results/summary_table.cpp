@@ -23,16 +23,19 @@ std::string magnitude(double value) {
 
 std::string layer_rows(const Summary& s) {
   const int frames = static_cast<int>(s.frames.size());
-  std::string text = formatted("  %-24s %9s %8s %8s %9s %9s %11s\n", "layer", "polygons", "renders", "rate",
-                               "mean px", "max px", "sprite px");
-  std::vector<LayerSummary> rows = s.layers;
-  rows.insert(rows.end(), s.shadow_maps.begin(), s.shadow_maps.end());
-  for (const LayerSummary& layer : rows) {
-    const std::string name = layer.name.size() <= 24 ? layer.name : layer.name.substr(0, 21) + "...";
-    const std::string sprite = formatted("%dx%d", layer.sprite_px.x, layer.sprite_px.y);
-    text += formatted("  %-24s %9d %8d %7.1f%% %9.3f %9.3f %11s\n", name.c_str(), layer.polygons,
-                      layer.renders, 100 * layer.update_rate(frames), layer.mean_geometric_px(),
-                      layer.max_geometric_px, sprite.c_str());
+  std::string text = formatted("  %-24s %9s %8s %8s %7s %9s %9s %11s  %s\n", "layer", "polygons", "renders",
+                               "rate", "cost", "mean px", "max px", "sprite px", "why drawn");
+  for (const LayerSummary* row : s.rows()) {
+    const std::string name = row->name.size() <= 24 ? row->name : row->name.substr(0, 21) + "...";
+    const std::string cost = formatted("%.1f%%", 100 * s.share_of_cost(*row));
+    if (row->is_mirror) {
+      text += formatted("  %-24s %9s %8d %8s %7s\n", name.c_str(), "", row->renders, "", cost.c_str());
+      continue;
+    }
+    const std::string sprite = formatted("%dx%d", row->sprite_px.x, row->sprite_px.y);
+    text += formatted("  %-24s %9d %8d %7.1f%% %7s %9.3f %9.3f %11s  %s\n", name.c_str(), row->polygons,
+                      row->renders, 100 * row->update_rate(frames), cost.c_str(), row->mean_geometric_px(),
+                      row->max_geometric_px, sprite.c_str(), row->reasons.text().c_str());
   }
   return text;
 }
@@ -79,11 +82,12 @@ std::string work_rows(const Summary& s) {
                     s.total([](const FrameLine& line) { return line.polygons.reference; }), "");
   text += share_row("pixels", s.pixels_rendered(),
                     s.total([](const FrameLine& line) { return line.pixels.reference; }), "");
-  if (!s.planned_only)
-    text += formatted(
-        "  modelled          %.2f ms a frame on talisman-1996\n",
-        s.frames.empty() ? 0 : s.total(&FrameLine::modelled_ms) / static_cast<double>(s.frames.size()));
-  return text;
+  const double frames = std::max(1.0, static_cast<double>(s.frames.size()));
+  if (s.planned_only)
+    return text + formatted("  modelled          %.2f ms of rendering a frame on talisman-1996, as planned\n",
+                            s.total(&FrameLine::modelled_render_ms) / frames);
+  return text + formatted("  modelled          %.2f ms a frame on talisman-1996\n",
+                          s.total(&FrameLine::modelled_ms) / frames);
 }
 
 /// What the budget put off, and what it could never pay.
