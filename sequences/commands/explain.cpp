@@ -78,14 +78,15 @@ int explain_folder(const ExplainOptions& options, std::ostream& out) {
                      " is one already, must be given with a SEQUENCE");
   Json settings;
   const ExplainedFrame explained = explained_folder(options.line.sequence, frame, settings);
-  out << options.line.sequence << ", frame " << frame << " of 0-" << explained.last_planned << ", policy "
-      << settings.at("policy").get<std::string>() << "\n\n";
+  const std::string title = options.line.sequence + ", frame " + std::to_string(frame) + " of 0-" +
+                            std::to_string(explained.last_planned) + ", policy " +
+                            settings.at("policy").get<std::string>() + "\n\n";
   if (options.layer.empty()) {
-    out << overview_of(explained.layers);
+    out << title << overview_of(explained.layers);
     return kSuccess;
   }
   const LayerHistory& layer = layer_asked_for(options.layer, explained.layers);
-  out << explanation_of(layer, settings) << hint_of(layer);
+  out << title << explanation_of(layer, settings) << hint_of(layer);
   return kSuccess;
 }
 
@@ -97,14 +98,15 @@ int explain_sequence(const ExplainOptions& options, std::ostream& out) {
     throw InputError("--frame is " + std::to_string(frame) + ", must be at most " +
                      std::to_string(sequence.frames - 1));
   const ExplainedFrame explained = explained_frame(sequence, run.settings, frame, options.layer);
-  out << sequence.name << ", frame " << frame << " of 0-" << sequence.frames - 1 << ", policy "
-      << regulator::name(run.settings.regulator.policy) << "\n\n";
+  const std::string title = sequence.name + ", frame " + std::to_string(frame) + " of 0-" +
+                            std::to_string(sequence.frames - 1) + ", policy " +
+                            std::string(regulator::name(run.settings.regulator.policy)) + "\n\n";
   if (options.layer.empty()) {
-    out << overview_of(explained.layers);
+    out << title << overview_of(explained.layers);
     return kSuccess;
   }
   const LayerHistory& layer = layer_asked_for(options.layer, explained.layers);
-  out << explanation_of(layer, json_of(run.settings)) << hint_of(layer);
+  out << title << explanation_of(layer, json_of(run.settings)) << hint_of(layer);
   out << "  threshold        " << text_of(flip_threshold_of(sequence, run.settings, layer)) << "\n";
   if (explained.pictures) {
     const std::string folder =

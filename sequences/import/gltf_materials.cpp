@@ -222,6 +222,7 @@ class Reading {
     to_.texture = textures_.of(info, mode == "OPAQUE");
     maps_.base = coordinates_of(info);
     maps_.has_base_map = to_.texture >= 0;
+    maps_.is_opaque = mode == "OPAQUE";
     set_alpha(mode, std::clamp(base[3], 0.0, 1.0));
   }
 

@@ -209,9 +209,7 @@ layers::Mesh read_primitive(GltfImport& import, const Json& primitive, int mater
   const GltfMaterial& maps = maps_of(import, material);
   const layers::Material& look =
       import.model.scene.materials[material >= 0 ? static_cast<std::size_t>(material) : last];
-  const bool opaque = look.opacity == 1 && look.alpha_cutoff == 0 &&
-                      (material < 0 || text_of(item_of(import.file, "materials", material), "alphaMode",
-                                               "OPAQUE") == "OPAQUE");
+  const bool opaque = look.opacity == 1 && look.alpha_cutoff == 0 && maps.is_opaque;
   read_coordinates(import, attributes, maps, mesh);
   read_colors(import, attributes, opaque, mesh);
   read_influences(import, attributes, mesh);

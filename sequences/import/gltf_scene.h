@@ -42,6 +42,7 @@ struct GltfCoordinates {
 struct GltfMaterial {
   GltfCoordinates base, emissive, normal;
   bool has_base_map = false, has_emissive_map = false, has_normal_map = false;
+  bool is_opaque = true;  ///< its alpha mode asks for no alpha
 };
 
 struct GltfImport {

@@ -101,7 +101,8 @@ void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameRe
     const chunker::Sprite* old = state.sprites.find(sprite.layer);
     if (!old) continue;
     const layers::ivec2 display_px = pipeline.settings.view.display_px;
-    const chunker::Frame shown = shown_alone(*old, sprite.screen_from_sprite, sprite.multipliers, display_px);
+    const chunker::Frame shown = shown_alone(*old, sprite.screen_from_sprite, sprite.multipliers,
+                                             report.layers[sprite.layer], display_px);
     const chunker::Frame fresh = fresh_alone(pipeline, state, report, sprite.layer, prepared);
     const ApparentShift seen = apparent_shift(shown, fresh, decision.shown_geometric_px);
     const fiducials::Photometric& light = report.assessments[sprite.layer].fiducials.photometric;

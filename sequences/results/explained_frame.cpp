@@ -57,7 +57,7 @@ chunker::Frame old_alone(const Pipeline& pipeline, const FrameReport& report, in
   multipliers.color *=
       layers::vec3(is_shown ? decision.shown_color : assessed.fiducials.photometric.multiplier);
   return shown_alone(kept.sprite, warp.now_from_then * kept.screen_from_sprite, multipliers,
-                     pipeline.settings.view.display_px);
+                     report.layers[layer], pipeline.settings.view.display_px);
 }
 
 /// Plans the frame and draws the layer.

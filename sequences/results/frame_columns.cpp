@@ -101,9 +101,9 @@ FrameColumns drawing() {
           "modelled_ms", "ms", "modelled time of the frame on the profile talisman-1996",
           [](auto& l) -> auto& { return l.modelled_ms; }),
       counted(
-          "modelled_render_ms", "ms",
+          "modelled_drawing_ms", "ms",
           "of it the renderer's part, as planned: texels are filled depth_complexity times",
-          [](auto& l) -> auto& { return l.modelled_render_ms; }),
+          [](auto& l) -> auto& { return l.modelled_drawing_ms; }),
       counted(
           "depth_complexity", "", "how often a texel is filled, as measured for a budget of ms; at least 1",
           [](auto& l) -> auto& { return l.depth_complexity; })};

@@ -66,7 +66,7 @@ FrameLine line_of(const FrameReport& report) {
   line.polygons.rendered += report.shade.shadow_polygons;
   line.pixels.rendered += report.shade.shadow_pixels;
   line.depth_complexity = report.depth_complexity;
-  line.modelled_render_ms =
+  line.modelled_drawing_ms =
       regulator::modelled_time(
           regulator::talisman_1996(), line.polygons.rendered,
           std::llround(sprite_pixels * line.depth_complexity) + report.shade.shadow_pixels, 0)

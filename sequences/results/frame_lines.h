@@ -77,7 +77,8 @@ struct FrameLine {
   std::int64_t fragments = 0, texture_samples = 0;
   std::int64_t sprite_bytes = 0;  ///< of the sprites that the frame shows
   double modelled_ms = 0;         ///< by the profile talisman-1996
-  double modelled_render_ms = 0;  ///< the part of rendering, as planned: texels filled depth_complexity times
+  double modelled_drawing_ms =
+      0;  ///< the part of rendering, as planned: texels filled depth_complexity times
   std::optional<double> light_beside_px;  ///< the largest of all Light layers; empty: there is none
   double depth_complexity = 1;            ///< by which a budget of ms was divided
   std::optional<CompressionReport> compression;

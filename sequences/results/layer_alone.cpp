@@ -8,12 +8,26 @@
 
 namespace talisman::sequences {
 
+namespace {
+
+/// So that it is seen by itself.
+void make_visible(chunker::Frame& frame, const layers::Layer& layer) {
+  if (layer.kind == layers::LayerKind::Light)
+    for (chunker::Linear16& p : frame.pixels) p.a = std::max({p.r, p.g, p.b});
+  if (layer.kind == layers::LayerKind::Shadow && layer.light >= 0)
+    for (chunker::Linear16& p : frame.pixels) p.r = p.g = p.b = p.a;
+}
+
+}  // namespace
+
 chunker::Frame shown_alone(const chunker::Sprite& sprite, const layers::dmat3& screen_from_sprite,
-                           const SpriteMultipliers& multipliers, layers::ivec2 display_px) {
+                           const SpriteMultipliers& multipliers, const layers::Layer& layer,
+                           layers::ivec2 display_px) {
   chunker::Frame frame{display_px.x, display_px.y, {}};
   frame.pixels.resize(static_cast<std::size_t>(display_px.x) * static_cast<std::size_t>(display_px.y));
   const chunker::PlacedSprite placed{&sprite, screen_from_sprite, multipliers.color, multipliers.alpha};
   chunker::composite_onto(frame, {&placed, 1});
+  make_visible(frame, layer);
   return frame;
 }
 
@@ -27,7 +41,7 @@ chunker::Frame fresh_alone(const Pipeline& pipeline, PipelineState& state, const
       draw_layer({pipeline, report.layers, maps, prepared, now}, report.layers[layer], placement);
   return shown_alone(result.sprite, layers::to_mat3(placement.screen_from_sprite),
                      multipliers_at(report.layers[layer], time_of(pipeline, report.frame)),
-                     pipeline.settings.view.display_px);
+                     report.layers[layer], pipeline.settings.view.display_px);
 }
 
 Image8 over_grey(chunker::Frame frame, const Crop& crop) {

@@ -12,9 +12,11 @@
 
 namespace talisman::sequences {
 
-/// The sprite alone, over nothing.
+/// The sprite alone, over nothing. A Light layer, which covers nothing, covers as much as it gives of the brightest channel;
+/// the Shadow layer of one light, which is black, is white. So both are seen by themselves.
 chunker::Frame shown_alone(const chunker::Sprite& sprite, const layers::dmat3& screen_from_sprite,
-                           const SpriteMultipliers& multipliers, layers::ivec2 display_px);
+                           const SpriteMultipliers& multipliers, const layers::Layer& layer,
+                           layers::ivec2 display_px);
 
 /// The layer as `reference` shows it in the frame of `report`, after the step that made it, with the state that it
 /// left. Cost: one drawing of the layer.

@@ -172,10 +172,10 @@ RunColumns modelled() {
                          const double frames = static_cast<double>(r.summary.frames.size());
                          return frames > 0 ? r.summary.total(&FrameLine::modelled_ms) / frames : 0;
                        }),
-          of_run("modelled_render_ms", "ms", "of it the renderer's part, as planned, mean over the frames",
+          of_run("modelled_drawing_ms", "ms", "of it the renderer's part, as planned, mean over the frames",
                  [](const RunRow& r) {
                    const double frames = static_cast<double>(r.summary.frames.size());
-                   return frames > 0 ? r.summary.total(&FrameLine::modelled_render_ms) / frames : 0;
+                   return frames > 0 ? r.summary.total(&FrameLine::modelled_drawing_ms) / frames : 0;
                  }),
           of_run("modelled_profile", "", "on this hardware",
                  [](const RunRow&) { return regulator::talisman_1996().name; })};

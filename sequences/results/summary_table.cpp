@@ -33,9 +33,10 @@ std::string layer_rows(const Summary& s) {
       continue;
     }
     const std::string sprite = formatted("%dx%d", row->sprite_px.x, row->sprite_px.y);
-    text += formatted("  %-24s %9d %8d %7.1f%% %7s %9.3f %9.3f %11s  %s\n", name.c_str(), row->polygons,
+    const std::string why = row->reasons.text();
+    text += formatted("  %-24s %9d %8d %7.1f%% %7s %9.3f %9.3f %11s%s%s\n", name.c_str(), row->polygons,
                       row->renders, 100 * row->update_rate(frames), cost.c_str(), row->mean_geometric_px(),
-                      row->max_geometric_px, sprite.c_str(), row->reasons.text().c_str());
+                      row->max_geometric_px, sprite.c_str(), why.empty() ? "" : "  ", why.c_str());
   }
   return text;
 }
@@ -85,7 +86,7 @@ std::string work_rows(const Summary& s) {
   const double frames = std::max(1.0, static_cast<double>(s.frames.size()));
   if (s.planned_only)
     return text + formatted("  modelled          %.2f ms of rendering a frame on talisman-1996, as planned\n",
-                            s.total(&FrameLine::modelled_render_ms) / frames);
+                            s.total(&FrameLine::modelled_drawing_ms) / frames);
   return text + formatted("  modelled          %.2f ms a frame on talisman-1996\n",
                           s.total(&FrameLine::modelled_ms) / frames);
 }

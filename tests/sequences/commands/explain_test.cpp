@@ -80,10 +80,10 @@ TEST_F(Explain, ThresholdAtWhichItIsKeptIsProved) {
               HasSubstr("on (planned: kept at 1 % looser, drawn at 1 % stricter)"));
   // What is kept says when it would have been drawn.
   int kept = -1;
-  for (const auto& [k, json] : ball)
+  for (const auto& [k, json] : decisions("--geometric-px 40", "ball"))
     if (json["decision"] == "reuse" && json["geometric_px"] > 0.1) kept = k;
   ASSERT_GE(kept, 0);
-  EXPECT_THAT(explained(kept, "--geometric-px 2 --layer ball"),
+  EXPECT_THAT(explained(kept, "--geometric-px 40 --layer ball"),
               HasSubstr("threshold        drawn below geometric_px "));
 }
 
@@ -140,7 +140,7 @@ TEST_F(Explain, BadInputIsOneLine) {
 TEST_F(Explain, PoliciesWithoutThresholdsSayWhatDecides) {
   EXPECT_THAT(explained(5, "--policy hold --layer ball"),
               HasSubstr("threshold        no threshold decides about it in this frame"));
-  EXPECT_THAT(explained(5, "--policy reference --layer ball"), HasSubstr("policy: reference"));
+  EXPECT_THAT(explained(2, "--policy reference --layer ball"), HasSubstr("policy: reference"));
 }
 
 }  // namespace

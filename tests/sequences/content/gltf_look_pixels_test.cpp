@@ -87,6 +87,15 @@ const auto glowing = [](const Json& emission, double strength) {
 const std::vector<PixelCase> kMaterialCases = {
     {"OpaqueHasNoAlpha", alpha("OPAQUE", 0.25), kSquare},
     {"MaskFromTheCutoffOnIsOpaque", alpha("MASK", 0.5), kSquare},
+    {"MaskWithACutoffOfZeroIsOpaque",
+     [](Gltf& f) {
+       Json& material = look(f, plain({1, 0, 0, 0.25}));
+       material["alphaMode"] = "MASK";
+       material["alphaCutoff"] = 0;
+       attribute(f, "COLOR_0",
+                 f.add<float>({1, 1, 1, .3, 1, 1, 1, .3, 1, 1, 1, .3, 1, 1, 1, .3}, 5126, "VEC4"));
+     },
+     kSquare},
     {"MaskBelowTheCutoffIsNotThere", alpha("MASK", 0.49), {{32, 32, kBlack}}},
     {"BlendIsOver", alpha("BLEND", 0.5), {{32, 32, {188, 0, 0}}, {8, 32, kBlack}}},
     {"BlendByVertices",

@@ -141,17 +141,48 @@ source="#p"/></vertices><triangles count="1" material="paint"><input semantic="V
          "url=\"#s\"/></scene></COLLADA>";
 }
 
-TEST(ColladaCamera, StandsInTheUnitsOfTheFileAndHasOurPlanes) {
+/// With a camera at z = 50 cm whose lens is `optics`.
+ImportedModel with_collada_camera(const std::string& optics) {
   const TemporaryFolder folder;
   Collada file;
-  file.libraries =
-      R"(<library_cameras><camera id="c"><optics><technique_common><perspective><xfov>40</xfov><yfov>40</yfov><znear>10</znear><zfar>1000</zfar></perspective></technique_common></optics></camera></library_cameras>)";
+  file.libraries = "<library_cameras><camera id=\"c\"><optics><technique_common>" + optics +
+                   "</technique_common></optics></camera></library_cameras>";
   file.nodes = R"(<node id="eye" name="eye"><translate>0 0 50</translate><instance_camera url="#c"/></node>)";
-  const layers::CameraState camera = import_model(folder.write("eye.dae", file.text())).scene.at(0).camera;
+  return import_model(folder.write("eye.dae", file.text()));
+}
+
+TEST(ColladaCamera, StandsInTheUnitsOfTheFileWithItsPlanes) {
+  const layers::CameraState camera =
+      with_collada_camera(
+          "<perspective><xfov>40</xfov><yfov>40</yfov><znear>10</znear><zfar>1000</zfar></perspective>")
+          .scene.at(0)
+          .camera;
   expect_near(camera.world_from_camera[3], {0, 0, 0.5});
-  // assimp hands on none of a COLLADA file's planes; its own defaults are no metres of this file.
-  EXPECT_EQ(camera.near_m, layers::Camera{}.near_m);
-  EXPECT_EQ(camera.far_m, layers::Camera{}.far_m);
+  EXPECT_NEAR(camera.near_m, 0.1, 1e-7);
+  EXPECT_NEAR(camera.far_m, 10, 1e-5);
+}
+
+// assimp takes one that says yfov alone for pi/4 degrees.
+TEST(ColladaCamera, SeesTheAnglesOfTheFile) {
+  const auto fov_deg = [](const std::string& words) {
+    const ImportedModel model = with_collada_camera("<perspective>" + words + "</perspective>");
+    return model.scene.cameras.at(0).fov_y_rad * 180 / M_PI;
+  };
+  EXPECT_NEAR(fov_deg("<yfov>90</yfov>"), 90, 1e-9);
+  EXPECT_NEAR(fov_deg("<yfov>60</yfov><aspect_ratio>2</aspect_ratio>"), 60, 1e-9);
+  EXPECT_NEAR(fov_deg("<xfov>90</xfov><aspect_ratio>2</aspect_ratio>"), 2 * std::atan(0.5) * 180 / M_PI,
+              1e-9);
+  EXPECT_NEAR(fov_deg("<xfov>50</xfov>"), 50, 1e-9);
+  EXPECT_NEAR(fov_deg("<xfov>70</xfov><yfov>30</yfov>"), 30, 1e-9);
+  for (const char* none : {"<yfov>0</yfov>", "<yfov>180</yfov>", "<yfov>nan</yfov>", ""}) {
+    EXPECT_GT(fov_deg(none), 10) << none;
+    EXPECT_LT(fov_deg(none), 100) << none;
+  }
+}
+
+TEST(ColladaCamera, OrthographicIsSaid) {
+  EXPECT_THAT(with_collada_camera("<orthographic><xmag>2</xmag></orthographic>").warnings,
+              ::testing::Contains(HasSubstr("camera 'eye' is orthographic")));
 }
 
 /// A library of materials of a transparency each, the first of them on the triangle.

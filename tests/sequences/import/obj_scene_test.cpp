@@ -98,6 +98,39 @@ TEST(ReadObj, PolygonAroundAHoleAndConcaveQuadrilateral) {
               1e-4);
 }
 
+TEST(ReadObj, FlatWhereItSaysThatNothingIsSmooth) {
+  // Two faces at a right angle, as in SmoothingGroupsEndAtTheirBorders.
+  const std::string faces = "f 1 2 3 4\nf 2 1 5 6\n",
+                    corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\n";
+  for (const char* off : {"s off\n", "s 0\n"})
+    EXPECT_NEAR(read_obj_text(corners + off + faces).scene.meshes.at(0).normals.at(0).z, 1, 1e-6) << off;
+  EXPECT_LT(read_obj_text(corners + faces).scene.meshes.at(0).normals.at(0).z, 0.95);  // says nothing
+}
+
+TEST(ReadObj, MarksCommentsAndContinuedLines) {
+  const std::string plain = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const std::vector<layers::vec3> expected = read_obj_text(plain).scene.meshes.at(0).positions;
+  for (const std::string& text :
+       {"\xEF\xBB\xBF" + plain, std::string("v 0 0 0 # info\nv 1 0 0 # nan\nv 0 1 0\nf 1 2 3 # c\n"),
+        std::string("v 0 0 0\r\nv 1 \\\r\n0 0\r\nv 0 1 0\r\nf 1 \\\r\n2 3\r\n"),
+        std::string("v 0 0 0\nv 1 0 0\nv 0 1 0\nfo 1 2 3\n"),
+        std::string("v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\r")})
+    EXPECT_EQ(read_obj_text(text).scene.meshes.at(0).positions, expected) << text;
+}
+
+TEST(ReadObj, MaterialBeforeItsLibraryIsFound) {
+  const TemporaryFolder folder;
+  folder.write("m.mtl", "newmtl red\nKd 1 0 0\n");
+  const ImportedModel model = import_model(
+      folder.write("late.obj", "usemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nmtllib m.mtl\n"));
+  EXPECT_EQ(model.scene.materials.at(model.scene.parts.at(0).material).base_color, layers::vec3(1, 0, 0));
+}
+
+TEST(ReadObj, CurvesAreSaid) {
+  EXPECT_THAT(read_obj_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nvp 0.1 0.2\ncurv 0 1 1 2 3\n").warnings,
+              ElementsAre("curves and surfaces are not drawn"));
+}
+
 TEST(ReadObj, PartsAreObjectsAndTheirMaterials) {
   const TemporaryFolder folder;
   folder.write("my colours.mtl", "newmtl dark red\nKd 0.5 0 0\nnewmtl blue\nKd 0 0 1\n");
