@@ -63,7 +63,7 @@ layers::dvec2 worst_place(const LayerHistory& layer) {
 std::string write_sheet(const std::string& folder, const LayerHistory& layer, const LayerPictures& pictures) {
   prepare_folder(folder);
   const int frame = layer.line.at("frame").get<int>();
-  const std::string file = folder + "/" + file_of(frame, layer.layer);
+  std::string file = folder + "/" + file_of(frame, layer.layer);
   const std::vector<std::string> title = {
       layer.layer + ", frame " + std::to_string(frame) + ": " + layer.line.at("decision").get<std::string>(),
       layer.line.at("reason").get<std::string>(), "the cross is where the geometric error is largest"};

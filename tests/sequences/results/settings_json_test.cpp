@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include <stdexcept>
+
 #include "sequences/results/settings_fields.h"
 #include "tests/sequences/results/changed_settings.h"
 
@@ -13,9 +15,10 @@ namespace {
 
 /// Stands for a value of any type in an aggregate initialisation.
 struct Any {
-  /// Never called: used in unevaluated expressions alone.
   template <typename T>
-  operator T() const;  // NOLINT(readability-identifier-naming)
+  operator T() const {
+    throw std::logic_error("used in unevaluated expressions alone");
+  }
 };
 
 /// The number of members of an aggregate: the most values by which it can be initialised.
