@@ -82,11 +82,11 @@ int explain_folder(const ExplainOptions& options, std::ostream& out) {
                             std::to_string(explained.last_planned) + ", policy " +
                             settings.at("policy").get<std::string>() + "\n\n";
   if (options.layer.empty()) {
-    out << title << overview_of(explained.layers);
+    out << title + overview_of(explained.layers);
     return kSuccess;
   }
   const LayerHistory& layer = layer_asked_for(options.layer, explained.layers);
-  out << title << explanation_of(layer, settings) << hint_of(layer);
+  out << title + explanation_of(layer, settings) + hint_of(layer);
   return kSuccess;
 }
 
@@ -102,7 +102,7 @@ int explain_sequence(const ExplainOptions& options, std::ostream& out) {
                             std::to_string(sequence.frames - 1) + ", policy " +
                             std::string(regulator::name(run.settings.regulator.policy)) + "\n\n";
   if (options.layer.empty()) {
-    out << title << overview_of(explained.layers);
+    out << title + overview_of(explained.layers);
     return kSuccess;
   }
   const LayerHistory& layer = layer_asked_for(options.layer, explained.layers);
@@ -121,7 +121,12 @@ int explain_sequence(const ExplainOptions& options, std::ostream& out) {
 int run_explain(const ExplainOptions& options, std::ostream& out) {
   std::error_code error;
   const bool is_folder = std::filesystem::exists(options.line.sequence + "/run.json", error);
-  return is_folder ? explain_folder(options, out) : explain_sequence(options, out);
+  if (!is_folder) return explain_sequence(options, out);
+  try {
+    return explain_folder(options, out);
+  } catch (const Json::exception&) {
+    throw InputError("run.json or decisions.jsonl is not as a run writes it", options.line.sequence);
+  }
 }
 
 }  // namespace talisman::sequences

@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <sstream>
 
 #include "sequences/files/quoted.h"
+#include "sequences/import/obj_text.h"
+#include "sequences/import/wide_text.h"
 
 namespace talisman::sequences {
 
@@ -42,7 +43,8 @@ bool ObjLibraries::add(const std::string& name) {
   const std::string found = find_file(place_, folder + "/" + name, files_);
   if (found.empty()) return false;
   lines_ += "mtllib " + name + "\n";
-  std::ifstream in(found, std::ios::binary);
+  ObjText text(open_text(found));
+  std::istream in(&text);
   for (std::string line; std::getline(in, line);) {
     const std::size_t at = line.find_first_not_of(" \t");
     if (at != std::string::npos && line.compare(at, 6, "newmtl") == 0)

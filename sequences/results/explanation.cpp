@@ -124,7 +124,9 @@ std::string explanation_of(const LayerHistory& layer, const Json& settings) {
   if (const Json* age = at(line, "/fiducials/frames_since_render"))
     text += "  age              " + age->dump() + " frames\n";
   text += "  displayed error  " + line.at("geometric_px").dump() + " px\n";
-  text += "  drawn before     " + frame_or(layer.drawn_before, "never") + "\n";
+  // The lines of a run of --frames A-B begin at A.
+  const char* unknown = at(line, "/fiducials") ? "before the first frame of the run" : "never";
+  text += "  drawn before     " + frame_or(layer.drawn_before, unknown) + "\n";
   return text + "  drawn next       " + frame_or(layer.drawn_after, "not in this run") + "\n";
 }
 

@@ -128,6 +128,11 @@ TEST_F(Explain, BadInputIsOneLine) {
   expect_bad_input("explain passing.yaml --frame 3 --layer bal", {"'bal'", "did you mean 'ball'"});
   run_shell("mkdir empty");
   expect_bad_input("explain empty --frame 3", {"'empty' is a folder"});
+  run_shell("mkdir odd && echo '{}' > odd/decisions.jsonl");
+  for (const char* text : {"[1]", "{\"version\": 2, \"settings\": {}}", "{\"settings\": 3}"}) {
+    write("odd/run.json", text);
+    expect_bad_input("explain odd --frame 3", {"odd: "});
+  }
   ASSERT_EQ(run("plan passing.yaml --out p --frames 0-9 --progress none").exit_code, 0);
   expect_bad_input("explain p --frame 10", {"no frame 10", "the last one is 9"});
   expect_bad_input("explain p --frame 3 --geometric-px 2", {"--geometric-px", "p is one already"});

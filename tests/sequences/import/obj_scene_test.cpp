@@ -120,10 +120,11 @@ TEST(ReadObj, MarksCommentsAndContinuedLines) {
 
 TEST(ReadObj, MaterialBeforeItsLibraryIsFound) {
   const TemporaryFolder folder;
-  folder.write("m.mtl", "newmtl red\nKd 1 0 0\n");
+  folder.write("m.mtl", "\xEF\xBB\xBFnewmtl red\nKd 1 0 0\n");
   const ImportedModel model = import_model(
       folder.write("late.obj", "usemtl red\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nmtllib m.mtl\n"));
   EXPECT_EQ(model.scene.materials.at(model.scene.parts.at(0).material).base_color, layers::vec3(1, 0, 0));
+  EXPECT_THAT(model.warnings, ElementsAre());  // the mark before "newmtl" is none of its letters
 }
 
 TEST(ReadObj, CurvesAreSaid) {
