@@ -319,7 +319,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
   if (assessment.preferences.whole_extents)
     assessment.fiducials.sampling.magnification /= placement.density_kept;
   if (is_blurred(assessment.preferences)) judge_motion_blur(layers, then, now, assessment);
-  assess_light_and_faces(pipeline, layers.bound(now.layer), then, now, assessment.fiducials);
+  assess_light_and_faces(pipeline, layers, then, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));
