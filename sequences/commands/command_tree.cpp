@@ -28,12 +28,13 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   app_.set_version_flag("--version", version_text, "version, commit, effects built, instruction set");
   add_runs(stop);
   add_explain();
+  add_tune(stop);
   add_inspect();
   add_diff();
   add_exports();
   add_warps();
   add_accuracy();
-  for (const char* command : {"render", "plan", "audit", "explain", "inspect", "warps", "accuracy"})
+  for (const char* command : {"render", "plan", "audit", "explain", "tune", "inspect", "warps", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
 }
 
@@ -70,6 +71,13 @@ void CommandTree::add_explain() {
         explain_.others.push_back(option->get_name());
     exit_code_ = run_explain(explain_, std::cout);
   });
+}
+
+void CommandTree::add_tune(const std::atomic<bool>& stop) {
+  CLI::App* command = app_.add_subcommand(
+      "tune", "the cheapest thresholds that hold a quality, or the finest ones within a time");
+  add_tune_options(*command, tune_);
+  command->callback([this, &stop] { exit_code_ = run_tune(tune_, stop, std::cout); });
 }
 
 void CommandTree::add_inspect() {

@@ -14,6 +14,7 @@
 #include "sequences/commands/export_command.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
+#include "sequences/commands/tune.h"
 #include "sequences/commands/warps.h"
 #include "sequences/files/errors.h"
 
@@ -34,6 +35,7 @@ class CommandTree {
  private:
   void add_runs(const std::atomic<bool>& stop);
   void add_explain();
+  void add_tune(const std::atomic<bool>& stop);
   void add_inspect();
   void add_diff();
   void add_exports();
@@ -43,6 +45,7 @@ class CommandTree {
   CLI::App app_;
   CommandLine line_;
   ExplainOptions explain_;
+  TuneOptions tune_;
   InspectOptions inspect_;
   DiffOptions diff_;
   ExportOptions export_;

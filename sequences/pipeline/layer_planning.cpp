@@ -290,7 +290,9 @@ void finish_geometric(const Pipeline& pipeline, const LayerTable& layers, const 
                       fiducials::Report& report) {
   report.geometric.where_px =
       glm::clamp(report.geometric.where_px, layers::dvec2(0), layers::dvec2(now.view.display_px));
-  if (report.shade.px > 0 && report.geometric.px > pipeline.settings.regulator.thresholds.geometric_px)
+  const double most_px = pipeline.settings.regulator.thresholds.geometric_px /
+                         layers[now.layer].preferences.importance.geometric;
+  if (report.shade.px > 0 && report.geometric.px > most_px)
     report.shade.what = shade_in_words(pipeline, layers, now, report.shade);
 }
 
