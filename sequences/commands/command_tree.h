@@ -12,6 +12,7 @@
 #include "sequences/commands/diff_command.h"
 #include "sequences/commands/explain.h"
 #include "sequences/commands/export_command.h"
+#include "sequences/commands/init.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/warps.h"
@@ -35,6 +36,7 @@ class CommandTree {
   void add_runs(const std::atomic<bool>& stop);
   void add_explain();
   void add_inspect();
+  void add_init();
   void add_diff();
   void add_exports();
   void add_warps();
@@ -44,6 +46,7 @@ class CommandTree {
   CommandLine line_;
   ExplainOptions explain_;
   InspectOptions inspect_;
+  InitOptions init_;
   DiffOptions diff_;
   ExportOptions export_;
   std::string documented_;
