@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/commands/command_tree.h"
 
+#include <array>
 #include <iostream>
 #include <string>
 #include <utility>
@@ -19,6 +20,40 @@ namespace {
 const std::string kProgressMeaning = alternatives(kProgressWords);
 const std::string kBoundMeaning = "characteristic polyhedron: " + alternatives(kBoundWords);
 
+struct Examples {
+  const char* command;
+  const char* first;
+  const char* second;
+};
+
+constexpr std::array kExamples{
+    Examples{"render", "talisman render carousel --frames 0-47 --size 640x480 --video",
+             "talisman render model.glb --geometric-px 2 --overlay --out out/try"},
+    Examples{"plan", "talisman plan carousel --geometric-px 2",
+             "talisman plan carousel --policy budget --budget-ms 8"},
+    Examples{"audit", "talisman audit carousel --frames 0-23",
+             "talisman audit carousel --policy interpolate --hold 4 --every 1"},
+    Examples{"explain", "talisman explain carousel --frame 17",
+             "talisman explain out/carousel --frame 17 --layer 'horse 1'"},
+    Examples{"inspect", "talisman inspect carousel --order", "talisman inspect model.glb --parts"},
+    Examples{"init", "talisman init model.glb > my.yaml", "talisman init model.glb --turntable 10 > my.yaml"},
+    Examples{"diff", "talisman diff out/a/frames out/b/frames", "talisman diff a.png b.png --map out/map"},
+    Examples{"export", "talisman export out/carousel --csv", ""},
+    Examples{"warps", "talisman warps --object vase", "talisman warps --bound dop14 --out out/warps-dop14"},
+    Examples{"accuracy", "talisman accuracy --solvers", "talisman accuracy --regulator carousel"},
+};
+
+/// At the foot of the help of each command.
+void add_examples(CLI::App& app) {
+  for (const Examples& examples : kExamples) {
+    std::string text =
+        "Behind the sign =: what holds where neither the option nor the sequence says it.\n\nExamples:\n";
+    for (const char* example : {examples.first, examples.second})
+      if (*example) text += std::string("  ") + example + "\n";
+    app.get_subcommand(examples.command)->footer(text);
+  }
+}
+
 }  // namespace
 
 CommandTree::CommandTree(const std::atomic<bool>& stop)
@@ -30,12 +65,15 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_explain();
   add_tune(stop);
   add_inspect();
+  add_init();
   add_diff();
   add_exports();
   add_warps();
   add_accuracy();
-  for (const char* command : {"render", "plan", "audit", "explain", "tune", "inspect", "warps", "accuracy"})
+  for (const char* command :
+       {"render", "plan", "audit", "explain", "tune", "inspect", "init", "warps", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
+  add_examples(app_);
 }
 
 void CommandTree::add_runs(const std::atomic<bool>& stop) {
@@ -87,12 +125,25 @@ void CommandTree::add_inspect() {
       .option("sequence", inspect_.sequence, "name of a sequence, path of its YAML file, or path of a model")
       .flag("--json", inspect_.json, "print JSON")
       .flag("--profile", inspect_.profile, "print the hardware profile with the source of each number")
+      .flag(
+          "--parts", inspect_.parts,
+          "the tree of nodes: names of parts, polygons, sizes in metres, textures, what is not drawn, and a "
+          "picture with the axes")
+      .option("--out", inspect_.out, "with --parts: the picture", "out/NAME-parts.png")
       .flag("--order", inspect_.order,
             "the visibility order over time, what was merged and why, and what the sort cost")
       .option("--cycles", inspect_.cycles, "with --order: " + alternatives(kCyclesWords))
       .option("--compositor", inspect_.compositor, "with --order: " + alternatives(kCompositorWords));
   add_content_options(*command, inspect_.content);
   command->callback([this] { exit_code_ = run_inspect(inspect_, std::cout); });
+}
+
+void CommandTree::add_init() {
+  CLI::App* command =
+      app_.add_subcommand("init", "a sequence file to begin with, made from a model, on standard output");
+  command->add_option("model", init_.model, "path of a model")->required();
+  add_content_options(*command, init_.content);
+  command->callback([this] { exit_code_ = run_init(init_, std::cout); });
 }
 
 void CommandTree::add_diff() {
@@ -120,10 +171,10 @@ void CommandTree::add_warps() {
   CLI::App* command = app_.add_subcommand(
       "warps", "update rate against error of every warp, and picture quality at one rate");
   OptionGroup(*command, "Options")
-      .option("--object", warps_.object, "name or file of one object (all)")
-      .option("--bound", warps_.bound, kBoundMeaning)
-      .option("--out", warps_.out, "result folder (out/warps)")
-      .option("--progress", warps_.progress, kProgressMeaning);
+      .option("--object", warps_.object, "name or file of one object", "all")
+      .option("--bound", warps_.bound, kBoundMeaning, warps_.bound)
+      .option("--out", warps_.out, "result folder", warps_.out)
+      .option("--progress", warps_.progress, kProgressMeaning, warps_.progress);
   command->callback([this] { exit_code_ = run_warps(warps_, std::cout); });
 }
 
@@ -144,15 +195,16 @@ void CommandTree::add_accuracy() {
             "cases of every stage that a careless one gets wrong, each with its rule; exit code 1 if one is "
             "broken");
   OptionGroup(*command, "Options")
-      .option("--inputs", accuracy_.inputs, "solvers: boxes per number of points")
-      .option("--frames", accuracy_.regulator.frames, "regulator, renderer, factoring: A-B, inclusive (all)")
+      .option("--inputs", accuracy_.inputs, "solvers: boxes per number of points",
+              std::to_string(accuracy_.inputs))
+      .option("--frames", accuracy_.regulator.frames, "regulator, renderer, factoring: A-B, inclusive", "all")
       .option("--size", accuracy_.regulator.size,
               "regulator, renderer, factoring: display, WxH (the sequence's, at most " +
                   std::to_string(kLargestDefault_px) + " in either direction)")
       .option("--quality-every", accuracy_.regulator.quality_every,
               "one frame of N is drawn and compared; 0: about 20 (regulator, factoring), 2 (renderer) in all")
-      .option("--out", accuracy_.out, "result folder (out/accuracy)")
-      .option("--progress", accuracy_.progress, kProgressMeaning);
+      .option("--out", accuracy_.out, "result folder", accuracy_.out)
+      .option("--progress", accuracy_.progress, kProgressMeaning, accuracy_.progress);
   command->callback([this] { exit_code_ = run_accuracy(accuracy_, std::cout); });
 }
 

@@ -12,6 +12,7 @@
 #include "sequences/commands/diff_command.h"
 #include "sequences/commands/explain.h"
 #include "sequences/commands/export_command.h"
+#include "sequences/commands/init.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/tune.h"
@@ -37,6 +38,7 @@ class CommandTree {
   void add_explain();
   void add_tune(const std::atomic<bool>& stop);
   void add_inspect();
+  void add_init();
   void add_diff();
   void add_exports();
   void add_warps();
@@ -47,6 +49,7 @@ class CommandTree {
   ExplainOptions explain_;
   TuneOptions tune_;
   InspectOptions inspect_;
+  InitOptions init_;
   DiffOptions diff_;
   ExportOptions export_;
   std::string documented_;

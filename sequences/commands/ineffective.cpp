@@ -56,8 +56,7 @@ std::vector<Group> groups_of(const CommandLine& line) {
 
 }  // namespace
 
-std::vector<std::string> without_effect(const CommandLine& line, Policy policy) {
-  std::vector<std::string> warnings;
+std::string of_another_policy(const CommandLine& line, Policy policy) {
   for (const Group& group : groups_of(line)) {
     if (group.given.empty() ||
         std::find(group.readers.begin(), group.readers.end(), policy) != group.readers.end())
@@ -65,12 +64,11 @@ std::vector<std::string> without_effect(const CommandLine& line, Policy policy) 
     std::vector<std::string> readers;
     for (const Policy reader : group.readers) readers.emplace_back(regulator::name(reader));
     const bool is_one = group.given.size() == 1;
-    warnings.push_back(listed(group.given, "and") + (is_one ? " has" : " have") + " no effect with policy " +
-                       std::string(regulator::name(policy)) + "; " +
-                       (readers.size() == 1 ? "policy " : "the policies ") + listed(readers, "and") +
-                       (readers.size() == 1 ? " reads " : " read ") + (is_one ? "it" : "them"));
+    return listed(group.given, "and") + (is_one ? " is no option" : " are no options") + " of policy " +
+           std::string(regulator::name(policy)) + "; " + (readers.size() == 1 ? "policy " : "the policies ") +
+           listed(readers, "and") + (readers.size() == 1 ? " has " : " have ") + (is_one ? "it" : "them");
   }
-  return warnings;
+  return {};
 }
 
 }  // namespace talisman::sequences

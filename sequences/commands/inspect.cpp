@@ -3,12 +3,14 @@
 
 #include <cstdio>
 #include <ostream>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "layers/effects.h"
 #include "regulator/profile.h"
 #include "sequences/commands/inspect_order.h"
+#include "sequences/commands/inspect_parts.h"
 #include "sequences/commands/missing_effects.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/words.h"
@@ -136,16 +138,35 @@ std::string inspection_json(const Sequence& s) {
   return json.dump(2) + "\n";
 }
 
+namespace {
+
+/// Options that belong to another question would be ignored.
+void require_one_question(const InspectOptions& options) {
+  if (!options.out.empty() && !options.parts)
+    throw InputError("--out is the picture of --parts, must come with it");
+  if (options.parts && options.order) throw InputError("--parts and --order are two questions, must be one");
+  for (const auto& [name, value] :
+       {std::pair{"--cycles", options.cycles}, {"--compositor", options.compositor}})
+    if (!value.empty() && !options.order)
+      throw InputError(std::string(name) + " is about the visibility order, must come with --order");
+}
+
+}  // namespace
+
 int run_inspect(const InspectOptions& options, std::ostream& out) {
+  require_one_question(options);
   if (options.profile) out << profile_text();
   if (options.sequence.empty()) {
     if (options.profile) return kSuccess;
     throw InputError("inspect needs a SEQUENCE, a MODEL or --profile");
   }
-  const Sequence sequence = load_with_warnings(options.sequence, options.content);
-  out << (options.order  ? order_of(sequence, options)
-          : options.json ? inspection_json(sequence)
-                         : inspection_text(sequence));
+  ContentWords content = options.content;
+  content.no_stage |= options.parts;  // the ground that a bare model is given is not in its file
+  const Sequence sequence = load_with_warnings(options.sequence, content);
+  out << (options.parts   ? inspect_parts(sequence, options.out, options.json)
+          : options.order ? order_of(sequence, options)
+          : options.json  ? inspection_json(sequence)
+                          : inspection_text(sequence));
   return kSuccess;
 }
 

@@ -15,7 +15,8 @@ namespace talisman::sequences {
 struct InspectOptions {
   std::string sequence;            ///< name or path; may be empty where `profile` is asked for
   std::string cycles, compositor;  ///< of `order`; empty: the sequence's own
-  bool json = false, profile = false, order = false;
+  std::string out;                 ///< picture of `parts`
+  bool json = false, profile = false, order = false, parts = false;
   ContentWords content;
 };
 

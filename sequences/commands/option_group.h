@@ -45,9 +45,12 @@ class OptionGroup {
  public:
   OptionGroup(CLI::App& command, std::string heading) : command_(command), heading_(std::move(heading)) {}
 
+  /// `standard`: what holds without the option, as it would be typed; the help shows it behind "=".
   template <typename T>
-  OptionGroup& option(const char* name, T& value, const std::string& meaning) {
+  OptionGroup& option(const char* name, T& value, const std::string& meaning,
+                      const std::string& standard = "") {
     CLI::Option* option = command_.add_option(name, value, meaning)->group(heading_);
+    if (!standard.empty()) option->default_str(standard);
     using Number = typename NumberOf<T>::type;
     if constexpr (std::is_arithmetic_v<Number> && !std::is_same_v<Number, bool>)
       option->check([](const std::string& text) { return number_defect<Number>(text); });

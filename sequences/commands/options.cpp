@@ -95,6 +95,8 @@ void require_consistent(const CommandLine& line, const regulator::RegulatorOptio
     throw InputError("--budget-gap compares choices within a budget, but --policy is '" +
                      std::string(regulator::name(options.policy)) + "', must be budget");
   if (const std::string defect = regulator::first_defect(options); !defect.empty()) throw InputError(defect);
+  if (const std::string foreign = of_another_policy(line, options.policy); !foreign.empty())
+    throw InputError(foreign);
 }
 
 void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& options) {
@@ -105,14 +107,6 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   apply_limits(line, options);
   apply_prediction(line, options);
   require_consistent(line, options);
-}
-
-warp::Curve curve_from(const std::string& text) {
-  const std::optional<warp::Curve> curve = warp::curve_from_name(text);
-  if (!curve)
-    throw InputError("--warp is '" + text +
-                     "', must be a curve name such as trn, iso, so, aff, affi, per or per2");
-  return *curve;
 }
 
 double positive(const char* option, double value, double largest) {
@@ -176,7 +170,7 @@ Settings settings_of(const CommandLine& line, const Sequence& sequence) {
   settings.regulator = sequence.regulator;
   apply_regulator(line, settings.regulator);
   settings.layers_own_warps = line.warp.empty();
-  settings.curve = curve_from(line.warp.empty() ? sequence.warp : line.warp);
+  settings.curve = choice("--warp", line.warp.empty() ? sequence.warp : line.warp, kCurveWords);
   settings.view.display_px = line.size.empty() ? sequence.display_px : display_from(line.size);
   if (sequence.clip_margin) settings.view.clip_margin = *sequence.clip_margin;
   apply_order(line, sequence, settings);
@@ -243,17 +237,20 @@ void require_none(const std::vector<std::string>& warnings, bool strict, const s
       file);
 }
 
+void say_content(const std::vector<std::string>& warnings, const std::vector<std::string>& notes) {
+  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
+  for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+}
+
 Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words) {
   Sequence sequence = load_sequence(name_or_path, content_options(words));
-  for (const std::string& warning : sequence.warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  for (const std::string& note : sequence.notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  say_content(sequence.warnings, sequence.notes);
   require_none(sequence.warnings, words.strict, sequence.file);
   return sequence;
 }
 
 ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {
   ResolvedRun run{settings_of(line, sequence), run_options_of(line, sequence, plan_only)};
-  run.warnings = without_effect(line, run.settings.regulator.policy);
   require_built_effects(sequence, run.settings);
   return run;
 }

@@ -49,7 +49,6 @@ struct CommandLine {
 struct ResolvedRun {
   Settings settings;
   RunOptions options;
-  std::vector<std::string> warnings{};  ///< of options that change nothing (ineffective.h)
 };
 
 /// Throws InputError that names option, value and rule.
@@ -57,6 +56,9 @@ ContentOptions content_options(const ContentWords& words);
 
 /// Throws InputError with the number of warnings where --strict allows none.
 void require_none(const std::vector<std::string>& warnings, bool strict, const std::string& file);
+
+/// On stderr, "warning: " or "note: " before each.
+void say_content(const std::vector<std::string>& warnings, const std::vector<std::string>& notes);
 
 /// Reads the sequence and says its warnings on stderr, "warning: " before each. Throws InputError.
 Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words = {});

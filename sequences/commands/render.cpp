@@ -43,6 +43,12 @@ std::vector<std::string> what_is_not_seen(const Summary& summary, const std::str
   return {file + ": no layer is in view in any frame"};
 }
 
+/// Only a render goes on where it was stopped: `plan` and `audit` have no --resume.
+const char* continuation(const RunOptions& options) {
+  const bool resumes = !options.plan_only && options.audit_every == 0;
+  return resumes ? "; the same command with --resume continues" : "; the same command begins anew";
+}
+
 std::string advice_text(const Sequence& sequence, const ResolvedRun& run, const Summary& summary) {
   std::string text;
   const FrameRange range{run.options.first_frame, run.options.last_frame};
@@ -57,15 +63,13 @@ int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool
   using oneapi::tbb::global_control;
   const Sequence sequence = load_with_warnings(line.sequence, line.content);
   const ResolvedRun resolved = resolve(line, sequence, plan_only);
-  say(resolved.warnings);
-  require_none(resolved.warnings, line.content.strict, sequence.file);
   std::optional<global_control> threads;
   if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);
   const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop);
   say_capped_sprites(outcome.summary, resolved.settings.placement.max_sprite_px);
   if (!outcome.complete) {
-    std::fprintf(stderr, "error: stopped after %zu frames; the same command with --resume continues\n",
-                 outcome.summary.frames.size());
+    std::fprintf(stderr, "error: stopped after %zu frames%s\n", outcome.summary.frames.size(),
+                 continuation(resolved.options));
     return kPartialResult;
   }
   const std::vector<std::string> unseen = what_is_not_seen(outcome.summary, sequence.file);

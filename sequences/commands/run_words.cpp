@@ -3,9 +3,12 @@
 
 #include <algorithm>
 
+#include <glm/trigonometric.hpp>
+
 #include "sequences/commands/option_group.h"
 #include "sequences/commands/parse_error.h"
 #include "sequences/commands/words.h"
+#include "sequences/content/value_type.h"
 #include "sequences/files/errors.h"
 
 namespace talisman::sequences {
@@ -13,6 +16,12 @@ namespace {
 
 const std::string kProgressMeaning = alternatives(kProgressWords);
 const std::string kBoundMeaning = "characteristic polyhedron: " + alternatives(kBoundWords);
+/// What holds where neither the command line nor the sequence says anything.
+const regulator::RegulatorOptions kUsual;
+
+std::string in_words(const layers::ivec2& size) {
+  return std::to_string(size.x) + "x" + std::to_string(size.y);
+}
 
 void add_sequence(CLI::App& command, CommandLine& line) {
   command
@@ -23,85 +32,109 @@ void add_sequence(CLI::App& command, CommandLine& line) {
 void add_run(CLI::App& command, CommandLine& line) {
   add_sequence(command, line);
   OptionGroup(command, "Run")
-      .option("--out", line.out, "result folder (out/<name>; plans: out/<name>-plan)")
-      .option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run")
-      .option("--size", line.size, "display, WxH pixels")
-      .option("--threads", line.threads, "worker threads; 0: all cores. The bytes do not depend on it")
-      .option("--progress", line.progress, kProgressMeaning)
+      .option("--out", line.out, "result folder", "out/NAME; plans: out/NAME-plan")
+      .option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run", "all")
+      .option("--size", line.size, "display, WxH pixels", in_words(Sequence().display_px))
+      .option("--threads", line.threads, "worker threads; 0: all cores. The bytes do not depend on it", "0")
+      .option("--progress", line.progress, kProgressMeaning, line.progress)
       .flag("--quiet", line.quiet, "no progress and no table; warnings and errors alone")
       .flag("--force", line.force, "write into --out though it holds files that are not of a run");
 }
 
 void add_policy(CLI::App& command, CommandLine& line) {
   OptionGroup(command, "Policy")
-      .option("--policy", line.policy, alternatives(kPolicyWords))
-      .option("--hold", line.hold, "N of the policies hold and interpolate")
+      .option("--policy", line.policy, alternatives(kPolicyWords),
+              std::string(word_of(kUsual.policy, kPolicyWords)))
+      .option("--hold", line.hold, "policies hold and interpolate: drawn every N frames",
+              std::to_string(kUsual.hold_frames))
       .option("--lookahead", line.lookahead,
-              "N of the policy lookahead: frames ahead as of which a sprite may be drawn")
+              "policy lookahead: frames ahead as of which a sprite may be drawn",
+              std::to_string(kUsual.lookahead.frames))
       .option("--predict", line.predict,
-              "policy lookahead: frames ahead are known, or linear: extrapolated from the last two");
+              "policy lookahead: frames ahead are known, or linear: extrapolated from the last two",
+              std::string(word_of(kUsual.lookahead.predict, kPredictionWords)));
 }
 
 void add_thresholds(CLI::App& command, CommandLine& line) {
+  const regulator::Thresholds& usual = kUsual.thresholds;
   OptionGroup(command, "Thresholds")
       .option("--geometric-px", line.geometric_px,
-              "threshold of the geometric fiducial, pixels; 0: reuse only what is identical")
+              "threshold of the geometric fiducial, pixels; 0: reuse only what is identical",
+              shown(usual.geometric_px))
       .option("--photometric", line.photometric,
-              "threshold of the photometric fiducial, linear light, 1 is white; 0: not regulated")
+              "threshold of the photometric fiducial, linear light, 1 is white; 0: not regulated",
+              shown(usual.photometric))
       .option("--light-angle-deg", line.light_angle_deg,
-              "threshold of the angle by which a light moves about a layer; 0: not regulated")
+              "threshold of the angle by which a light moves about a layer; 0: not regulated",
+              shown(glm::degrees(usual.light_angle_rad)))
       .option("--shadow-map-px", line.shadow_map_px,
-              "how far shadows may be off because their map is old, pixels; 0: maps are never old")
+              "how far shadows may be off because their map is old, pixels; 0: maps are never old",
+              shown(usual.shadow_map_px))
       .option("--turned-px", line.turned_px,
-              "threshold of the size of a side that has turned to the eye, pixels; 0: not regulated");
+              "threshold of the size of a side that has turned to the eye, pixels; 0: not regulated",
+              shown(usual.turned_px));
 }
 
 void add_budget(CLI::App& command, CommandLine& line) {
-  OptionGroup(command, "Budget")
+  const regulator::BudgetOptions& usual = kUsual.budget;
+  OptionGroup(command, "Budget, of the policy budget")
       .option("--budget-polygons", line.budget_polygons,
-              "policy budget: triangles per frame; only first appearances may exceed it")
-      .option("--budget-pixels", line.budget_pixels, "policy budget: sprite texels per frame, likewise")
-      .option("--budget-chunks", line.budget_chunks,
-              "policy budget: 32x32 chunks of sprites per frame, likewise")
-      .option("--budget-ms", line.budget_ms,
-              "policy budget: modelled render time per frame on talisman-1996, likewise")
+              "triangles per frame; only first appearances may exceed it", "no limit")
+      .option("--budget-pixels", line.budget_pixels, "sprite texels per frame, likewise", "no limit")
+      .option("--budget-chunks", line.budget_chunks, "32x32 chunks of sprites per frame, likewise",
+              "no limit")
+      .option("--budget-ms", line.budget_ms, "modelled render time per frame on talisman-1996, likewise",
+              "no limit")
       .option("--min-resolution", line.min_resolution,
-              "policy budget: least resolution of sprites that must fit, (0, 1]; 1: never lowered")
-      .option("--cutoff-px", line.cutoff_px,
-              "policy budget: benefit up to which a layer is not drawn again, pixels")
+              "least resolution of sprites that must fit, (0, 1]; 1: never lowered",
+              shown(usual.min_resolution))
+      .option("--cutoff-px", line.cutoff_px, "benefit up to which a layer is not drawn again, pixels",
+              shown(usual.cutoff_px))
       .option("--choice", line.choice,
-              "policy budget: paper (by benefit over cost) or best (never worse, half the best at least)")
-      .option(
-          "--depth-complexity", line.depth_complexity,
-          "policy budget: pixels filled per texel, by which those of --budget-ms are divided; 0: measured")
+              "paper (by benefit over cost) or best (never worse, half the best at least)",
+              std::string(word_of(usual.choice, kChoiceRuleWords)))
+      .option("--depth-complexity", line.depth_complexity,
+              "pixels filled per texel, by which those of --budget-ms are divided; 0: measured",
+              shown(usual.depth_complexity))
       .flag("--budget-gap", line.budget_gap,
-            "policy budget: also report the best choice of each frame, and what the choice misses");
+            "also report the best choice of each frame, and what the choice misses");
 }
 
 void add_layers(CLI::App& command, CommandLine& line) {
+  const Sequence usual;
   OptionGroup(command, "Layers")
-      .option("--warp", line.warp,
-              "warp curve: trn trni iso isoi so soi aff affi per peri per2 per2i pers pers2")
-      .option("--color-warp", line.color_warp, "on, or off: as hardware without colour multipliers")
-      .option("--bound", line.bound, kBoundMeaning)
+      .option("--warp", line.warp, "warp curve: " + alternatives(kCurveWords), usual.warp)
+      .option("--color-warp", line.color_warp, "on, or off: as hardware without colour multipliers",
+              std::string(word_of(kUsual.color_warp, kSwitchWords)))
+      .option("--bound", line.bound, kBoundMeaning, std::string(word_of(usual.bound, kBoundWords)))
       .option("--material-points", line.material_points,
-              "samples of the surface of each body that deforms or whose light is followed, 0 to 1024")
+              "samples of the surface of each body that deforms or whose light is followed, 0 to 1024",
+              std::to_string(usual.material_points))
       .option("--cycles", line.cycles,
-              "layers that occlude each other in a cycle: merge (into one sprite) or keep (may be wrong)")
+              "layers that occlude each other in a cycle: merge (into one sprite) or keep (may be wrong)",
+              std::string(word_of(usual.cycles, kCyclesWords)))
       .option("--compositor", line.compositor,
               "talisman: over only; extended: also out and plus with two image registers, so that layers "
-              "that go round are not merged unless two of them meet")
-      .option("--expected-reuse", line.expected_reuse, "frames for which clipped sprites are enlarged");
+              "that go round are not merged unless two of them meet",
+              std::string(word_of(usual.compositor, kCompositorWords)))
+      .option("--expected-reuse", line.expected_reuse, "frames for which clipped sprites are enlarged",
+              shown(usual.extents.expected_reuse_frames));
+}
+
+void add_drawing(OptionGroup group, CommandLine& line) {
+  group.option("--shading", line.shading, alternatives(kShadingWords),
+               std::string(word_of(chunker::RenderOptions().shading, kShadingWords)));
+  group.option("--resolution", line.resolution, "sprite texels per display pixel, each axis",
+               shown(layers::PlacementOptions().resolution_scale));
+  group.option("--compression", line.compression,
+               "keep sprites compressed: quality 1 to 100 (about 10:1 at 85), 0: none", "0");
 }
 
 void add_pictures(CLI::App& command, CommandLine& line) {
-  OptionGroup(command, "Pictures")
-      .option("--format", line.format, alternatives(kFormatWords))
-      .option("--shading", line.shading, alternatives(kShadingWords))
-      .option("--resolution", line.resolution, "sprite texels per display pixel, each axis")
-      .option("--compression", line.compression,
-              "keep sprites compressed: quality 1 to 100 (about 10:1 at 85), 0: none")
-      .flag("--video", line.video, "also write video.mp4")
+  OptionGroup group(command, "Pictures");
+  group.option("--format", line.format, alternatives(kFormatWords), line.format);
+  add_drawing(group, line);
+  group.flag("--video", line.video, "also write video.mp4")
       .flag("--separate", line.separate,
             "also write each shade sprite alone, and the sum with its base (DIR/separate)")
       .flag("--overlay", line.overlay, "draw each sprite's outline, coloured by age")
@@ -109,7 +142,8 @@ void add_pictures(CLI::App& command, CommandLine& line) {
             "PSNR, SSIM and FLIP of each frame against reference and direct (slow)")
       .option("--audit", line.audit,
               "draw every N-th reuse of a layer fresh and compare: were the fiducials right? Sheets in "
-              "DIR/audit")
+              "DIR/audit",
+              "none")
       .flag("--resume", line.resume, "continue a run that was stopped");
 }
 
@@ -131,29 +165,27 @@ void add_run_options(CLI::App& command, CommandLine& line) {
 void add_decision_options(CLI::App& command, CommandLine& line) {
   add_sequence(command, line);
   OptionGroup(command, "Run")
-      .option("--out", line.out, "folder of the pictures (out/<name>-explain)")
-      .option("--size", line.size, "display, WxH pixels");
+      .option("--out", line.out, "folder of the pictures", "out/NAME-explain")
+      .option("--size", line.size, "display, WxH pixels", in_words(Sequence().display_px));
   add_content_options(command, line.content);
   add_decisions(command, line);
 }
 
 void add_audit_options(CLI::App& command, CommandLine& line) {
-  OptionGroup(command, "Audit")
-      .option("--every", line.audit, "one reuse of so many of each layer is drawn fresh (8)")
-      .option("--shading", line.shading, alternatives(kShadingWords))
-      .option("--resolution", line.resolution, "sprite texels per display pixel, each axis")
-      .option("--compression", line.compression, "keep sprites compressed: quality 1 to 100, 0: none");
+  OptionGroup group(command, "Audit");
+  group.option("--every", line.audit, "one reuse of so many of each layer is drawn fresh", "8");
+  add_drawing(group, line);
 }
 
 void add_content_options(CLI::App& command, ContentWords& words) {
   OptionGroup(command, "Content")
       .flag("--strict", words.strict, "what the content has and the picture lacks is an error")
       .option("--assets", words.assets, "a folder in which files that models name may lie, too")
-      .option(
-          "--exposure", words.exposure,
-          "illuminance that shows 1 on a white surface that faces the light: lux in models, 1 in sequences")
-      .option("--turntable", words.turntable,
-              "seconds for one turn of the orbiting camera (20; sequences: 5)")
+      .option("--exposure", words.exposure,
+              "illuminance that shows 1 on a white surface that faces the light: lux in models",
+              "the file's, else 1")
+      .option("--turntable", words.turntable, "seconds for one turn of the orbiting camera",
+              "models: 20; sequences: the file's, else 5")
       .flag("--no-stage", words.no_stage, "a bare model stands before black, on no ground");
 }
 

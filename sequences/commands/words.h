@@ -21,6 +21,7 @@
 #include "sequences/files/image_io.h"
 #include "sequences/files/progress.h"
 #include "sequences/pipeline/frame_order.h"
+#include "warp/warp.h"
 
 namespace talisman::sequences {
 
@@ -69,6 +70,7 @@ Words<T, N> words_of(const std::array<T, N>& values) {
   return words;
 }
 
+inline const auto kCurveWords = words_of(warp::kAllCurves);
 inline const auto kPolicyWords = words_of(regulator::kAllPolicies);
 inline const auto kPredictionWords = words_of(regulator::kAllPredictions);
 inline const auto kChoiceRuleWords = words_of(regulator::kAllChoiceRules);

@@ -47,7 +47,7 @@ const Table<ModelRecipe>& model_keys() {
     Table<M> t("model");
     t.key("id", name_of, text(), "", "its name if there are no instances")
         .required()
-        .key("file", &M::file, asset(), "", "any format that assimp reads")
+        .key("file", &M::file, asset(), "", "a model: glTF, COLLADA, FBX, OBJ, 3DS, AC3D …")
         .required()
         .key("scale", &M::scale, number(kPositive), "", "factor")
         .key("length_m", &M::length_m, number(kPositive), "m",
@@ -56,7 +56,10 @@ const Table<ModelRecipe>& model_keys() {
         .key("turn_deg", &M::turn_deg, vector(), "°", "about x, then y, then z, so that the nose is along -z")
         .key("centered", &M::centered, truth(), "", "the middle of the bounds becomes the origin")
         .key("two_sided", &M::two_sided, truth(), "",
-             "no back-face culling, for files with careless windings");
+             "no back-face culling, for files with careless windings")
+        .key("lights", &M::lights, truth(), "",
+             "the file's own lights shine too, each with the fall-off and the exposure that the file gives "
+             "it");
     return with_instances(t, "they share geometry; parts are called `instance/path of nodes`");
   }();
   return table;
@@ -90,6 +93,11 @@ void read_plane(const YamlValue& value, ShapeRecipe& shape) {
   shape.content.kind = ShapeKind::Plane;
   shape.content.size_m = {size.x, 1, size.y};
 }
+void read_disc(const YamlValue& value, ShapeRecipe& shape) {
+  const double diameter = value.number(kPositive);
+  shape.content.kind = ShapeKind::Disc;
+  shape.content.size_m = {diameter, 1, diameter};
+}
 
 /// A member of the material.
 template <typename Member>
@@ -104,7 +112,8 @@ void add_kinds(Table<ShapeRecipe>& table) {
               "its diameter, or one along each axis")
       .custom("cylinder", pair_above_0, read_cylinder, "m", "diameter and height, along y")
       .custom("plane", pair_above_0, read_plane, "m", "sides along x and z, in y = 0, facing up")
-      .exactly_one_of({"box", "sphere", "cylinder", "plane"})
+      .custom("disc", number_type(kPositive), read_disc, "m", "its diameter, in y = 0, facing up")
+      .exactly_one_of({"box", "sphere", "cylinder", "plane", "disc"})
       .key("taper", at(&ShapeRecipe::content, &ShapeContent::taper), number({0, 1}), "",
            "of a cylinder: its top over its bottom; 0: a cone")
       .only_with("cylinder");
@@ -120,9 +129,9 @@ void add_material(Table<ShapeRecipe>& table) {
            "share of a planar reflection that is added; flat shapes only")
       .key("two_sided", material(&Material::two_sided), truth(), "", "no back-face culling")
       .key("unlit", material(&Material::unlit), truth(), "", "the colour as it is")
-      .key(
-          "texture", at(&ShapeRecipe::content, &ShapeContent::texture_file), asset(), "",
-          "picture: over each face of a box, a plane, around and along a cylinder, by longitude and latitude")
+      .key("texture", at(&ShapeRecipe::content, &ShapeContent::texture_file), asset(), "",
+           "picture: over each face of a box, a plane, the square around a disc, around and along a "
+           "cylinder, by longitude and latitude")
       .key("texture2", at(&ShapeRecipe::content, &ShapeContent::second_texture_file), asset(), "",
            "a second picture, T2")
       .when(has({"texture2"}),
@@ -146,7 +155,7 @@ const Table<ShapeRecipe>& shape_keys() {
              "its name if there are no instances; its part is called the same")
         .required();
     add_kinds(t);
-    t.when(has({"sphere", "cylinder"}), segment_keys(32, 3, "around it"))
+    t.when(has({"sphere", "cylinder", "disc"}), segment_keys(32, 3, "around it"))
         .when(has({"box", "plane"}), segment_keys(1, 1, "along each side"));
     add_material(t);
     return with_instances(t, "they share the mesh");

@@ -9,6 +9,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "sequences/content/shapes.h"
+
 namespace talisman::sequences {
 
 namespace {
@@ -28,7 +30,6 @@ constexpr float kBackdrop = 128.0f / 255 * 128 / 255;
 /// In radii of what stands on it; the shadow of its sphere reaches as far under the key light.
 constexpr double kGroundRadius = 2.3;
 constexpr double kGroundGap = 2e-3;  // below the lowest point: nothing lies in the ground's plane
-constexpr int kGroundSides = 48;
 
 int add_node(layers::Scene& scene, const std::string& name, int parent, const layers::Transform& local) {
   scene.nodes.push_back({name, parent, local});
@@ -48,23 +49,6 @@ Sphere around(const layers::Scene& scene) {
   return {0.5 * (bounds.lo + bounds.hi), radius > 0 ? radius : 1, bounds.lo.y};
 }
 
-void add_orbit(layers::Scene& scene, const Sphere& all, double turn_s) {
-  const double distance = kOrbitRoom * all.radius / std::sin(kOrbitFov_rad / 2);
-  layers::Transform pivot, arm;
-  pivot.translation = all.center;
-  arm.rotation = glm::angleAxis(-kOrbitElevation_rad, dvec3(1, 0, 0));
-  arm.translation = arm.rotation * dvec3(0, 0, distance);
-  const int pivot_node = add_node(scene, "orbit", -1, pivot);
-  layers::Camera camera;
-  camera.name = "orbit";
-  camera.node = add_node(scene, "orbit camera", pivot_node, arm);
-  camera.fov_y_rad = kOrbitFov_rad;
-  camera.near_m = 0.5 * (distance - all.radius);
-  camera.far_m = 2 * (distance + all.radius);
-  scene.tracks.push_back({pivot_node, layers::SpinTrack{{0, 1, 0}, 2 * M_PI / turn_s}});
-  scene.cameras.push_back(camera);
-}
-
 Light light_of(const char* name, Light::Kind kind, const dvec3& direction, float intensity) {
   Light light;
   light.name = name;
@@ -79,46 +63,46 @@ void add_daylight(layers::Scene& scene) {
   scene.lights.push_back(light_of("sun", Light::Kind::Directional, {-0.45, -0.75, -0.5}, 0.85f));
 }
 
-void add_key_and_sky(layers::Scene& scene, float factor) {
-  scene.lights.push_back(light_of("sky", Light::Kind::Ambient, {0, -1, 0}, kSkyAround * factor));
-  scene.lights.push_back(light_of("sky above", Light::Kind::Directional, {0, -1, 0}, kSkyAbove * factor));
-  scene.lights.push_back(light_of("key", Light::Kind::Directional, kKeyDirection, kKey * factor));
+std::vector<Light> key_and_sky() {
+  return {light_of("sky", Light::Kind::Ambient, {0, -1, 0}, kSkyAround),
+          light_of("sky above", Light::Kind::Directional, {0, -1, 0}, kSkyAbove),
+          light_of("key", Light::Kind::Directional, kKeyDirection, kKey)};
 }
 
-/// A disc in y = 0 that faces up.
-layers::Mesh disc(double radius) {
-  layers::Mesh mesh;
+StageGround ground_below(const Sphere& all) {
+  StageGround ground;
+  ground.place = {all.center.x, all.lowest - kGroundGap * all.radius, all.center.z};
+  ground.radius_m = kGroundRadius * all.radius;
+  const double light = kSkyAround + kSkyAbove - kKey * kKeyDirection.y;
+  ground.color = layers::vec3(static_cast<float>(kBackdrop / light));
+  return ground;
+}
+
+layers::Mesh mesh_of(const StageGround& ground) {
+  ShapeContent disc;
+  disc.kind = ShapeContent::Kind::Disc;
+  disc.size_m = {2 * ground.radius_m, 1, 2 * ground.radius_m};
+  disc.segments = ground.segments;
+  layers::Mesh mesh = shape_mesh(disc);
   mesh.name = "ground";
-  for (int k = 0; k < kGroundSides; ++k) {
-    const double angle = 2 * M_PI * k / kGroundSides;
-    mesh.positions.emplace_back(radius * std::sin(angle), 0, radius * std::cos(angle));
-    if (k >= 2) mesh.indices.insert(mesh.indices.end(), {0u, unsigned(k - 1), unsigned(k)});
-  }
-  mesh.normals.assign(mesh.positions.size(), layers::vec3(0, 1, 0));
   return mesh;
 }
 
-std::string unused_name(const std::set<std::string>& used, std::string name) {
-  while (used.contains(name)) name += "'";
-  return name;
-}
-
-void add_ground(layers::Scene& scene, const Sphere& all, std::vector<layers::LayerSpec>& specs) {
+void add_ground(layers::Scene& scene, const StageGround& ground, std::vector<layers::LayerSpec>& specs) {
   std::set<std::string> parts, specced;
   for (const layers::Part& part : scene.parts) parts.insert(part.name);
   for (const layers::LayerSpec& spec : specs) specced.insert(spec.name);
   layers::Transform place;
-  place.translation = {all.center.x, all.lowest - kGroundGap * all.radius, all.center.z};
+  place.translation = ground.place;
   layers::Part part;
   part.name = unused_name(parts, "ground");
   part.node = add_node(scene, "ground", -1, place);
   part.mesh = static_cast<int>(scene.meshes.size());
   part.material = static_cast<int>(scene.materials.size());
-  scene.meshes.push_back(disc(kGroundRadius * all.radius));
+  scene.meshes.push_back(mesh_of(ground));
   layers::Material material;
   material.name = "ground";
-  const double light = kSkyAround + kSkyAbove - kKey * kKeyDirection.y;
-  material.base_color = layers::vec3(static_cast<float>(kBackdrop / light));
+  material.base_color = ground.color;
   scene.materials.push_back(material);
   scene.parts.push_back(part);
   layers::LayerSpec spec;
@@ -132,6 +116,40 @@ void add_ground(layers::Scene& scene, const Sphere& all, std::vector<layers::Lay
 }
 
 }  // namespace
+
+std::string unused_name(const std::set<std::string>& used, std::string name) {
+  while (used.contains(name)) name += "'";
+  return name;
+}
+
+Orbit orbit_around(const layers::Scene& scene, double turn_s) {
+  const Sphere all = around(scene);
+  Orbit orbit;
+  orbit.center = all.center;
+  orbit.distance_m = kOrbitRoom * all.radius / std::sin(kOrbitFov_rad / 2);
+  orbit.elevation_rad = kOrbitElevation_rad;
+  orbit.turn_s = turn_s;
+  orbit.fov_y_rad = kOrbitFov_rad;
+  orbit.near_m = 0.5 * (orbit.distance_m - all.radius);
+  orbit.far_m = 2 * (orbit.distance_m + all.radius);
+  return orbit;
+}
+
+void add_orbit(layers::Scene& scene, const Orbit& orbit) {
+  layers::Transform pivot, arm;
+  pivot.translation = orbit.center;
+  arm.rotation = glm::angleAxis(-orbit.elevation_rad, dvec3(1, 0, 0));
+  arm.translation = arm.rotation * dvec3(0, 0, orbit.distance_m);
+  const int pivot_node = add_node(scene, "orbit", -1, pivot);
+  layers::Camera camera;
+  camera.name = "orbit";
+  camera.node = add_node(scene, "orbit camera", pivot_node, arm);
+  camera.fov_y_rad = orbit.fov_y_rad;
+  camera.near_m = orbit.near_m;
+  camera.far_m = orbit.far_m;
+  scene.tracks.push_back({pivot_node, layers::SpinTrack{{0, 1, 0}, 2 * M_PI / orbit.turn_s}});
+  scene.cameras.push_back(camera);
+}
 
 layers::WorldBounds bounds_of_scene(const layers::Scene& scene) {
   constexpr int kSteps = 8;
@@ -149,20 +167,33 @@ layers::WorldBounds bounds_of_scene(const layers::Scene& scene) {
 }
 
 void add_default_view(layers::Scene& scene, double turn_s) {
-  if (scene.cameras.empty()) add_orbit(scene, around(scene), turn_s);
+  if (scene.cameras.empty()) add_orbit(scene, orbit_around(scene, turn_s));
   if (scene.lights.empty()) add_daylight(scene);
 }
 
+ModelStage model_stage(const layers::Scene& scene, const ModelView& view) {
+  ModelStage stage;
+  const bool lit_by_us = scene.lights.empty();
+  if (lit_by_us) stage.lights = key_and_sky();
+  if (!scene.cameras.empty()) return stage;
+  stage.orbit = orbit_around(scene, view.turn_s);
+  if (!view.stage) return stage;
+  stage.backdrop = layers::vec3(lit_by_us ? kBackdrop / static_cast<float>(view.exposure_lx) : kBackdrop);
+  if (!lit_by_us) return stage;  // other lights would show the ground
+  stage.lights.back().casts_shadow = true;
+  stage.ground = ground_below(around(scene));
+  return stage;
+}
+
 void add_model_view(layers::Scene& scene, std::vector<layers::LayerSpec>& specs, const ModelView& view) {
-  const bool shown_by_us = view.stage && scene.cameras.empty(), lit_by_us = scene.lights.empty();
-  const Sphere all = around(scene);
-  if (lit_by_us) add_key_and_sky(scene, static_cast<float>(1 / view.exposure_lx));
-  if (scene.cameras.empty()) add_orbit(scene, all, view.turn_s);
-  if (!shown_by_us) return;
-  scene.background = layers::vec3(lit_by_us ? kBackdrop / static_cast<float>(view.exposure_lx) : kBackdrop);
-  if (!lit_by_us) return;  // other lights would show the ground
-  scene.lights.back().casts_shadow = true;
-  add_ground(scene, all, specs);
+  const ModelStage stage = model_stage(scene, view);
+  for (layers::Light light : stage.lights) {
+    light.color /= static_cast<float>(view.exposure_lx);
+    scene.lights.push_back(std::move(light));
+  }
+  if (stage.orbit) add_orbit(scene, *stage.orbit);
+  if (stage.backdrop) scene.background = *stage.backdrop;
+  if (stage.ground) add_ground(scene, *stage.ground, specs);
 }
 
 }  // namespace talisman::sequences

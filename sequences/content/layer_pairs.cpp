@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/layer_pairs.h"
 
+#include "sequences/content/nearest_word.h"
+
 namespace talisman::sequences {
 
 namespace {
@@ -16,10 +18,15 @@ using layers::Layer;
 std::vector<int> matching(const LayerPairEntry& entry, const std::string& glob,
                           std::span<const Layer> layers) {
   std::vector<int> ids;
-  for (const Layer& layer : layers)
-    if (layer.base < 0 && layers::glob_matches(glob, layer.name)) ids.push_back(layer.id);
+  std::vector<std::string> names;
+  for (const Layer& layer : layers) {
+    if (layer.base >= 0) continue;
+    names.push_back(layer.name);
+    if (layers::glob_matches(glob, layer.name)) ids.push_back(layer.id);
+  }
   if (ids.empty())
-    fail(entry, "'" + glob + "' matches no layer, rule: the name of a layer, * any run, ? one character");
+    fail(entry, "'" + glob + "' matches no layer, rule: the name of a layer, * any run, ? one character" +
+                    did_you_mean(glob, names));
   return ids;
 }
 

@@ -9,6 +9,8 @@
 #include <glm/gtc/quaternion.hpp>
 
 #include "sequences/content/default_view.h"
+#include "sequences/content/nearest_word.h"
+#include "sequences/files/quoted.h"
 #include "sequences/import/texture_io.h"
 
 namespace talisman::sequences {
@@ -69,14 +71,40 @@ SharedContent add_content(layers::Scene& scene, const layers::Scene& model, bool
   return at;
 }
 
-/// Nodes, skins, tracks and parts of one instance below `carrier`. Lights and cameras of a model are left
-/// out: a sequence has its own.
-void add_instance(BuiltScene& built, const ImportedModel& model, const SharedContent& content, int carrier,
-                  const std::string& name) {
+/// Where an instance goes.
+struct InstancePlace {
+  std::string name;
+  int carrier = -1;
+  double scale = 1;
+  bool with_lights = false;
+};
+
+/// What a sequence may, or may not, use of a model's own. What stands in the file's world stands in its carrier's
+/// space; lengths are scaled with the model, so that light falls off over it as in the file.
+void add_view(BuiltScene& built, const layers::Scene& model, const InstancePlace& place, std::size_t nodes) {
+  const auto placed = [&](int node) { return node < 0 ? place.carrier : shifted(node, nodes); };
+  for (layers::Camera camera : model.cameras) {
+    camera.node = placed(camera.node);
+    camera.near_m *= place.scale;
+    camera.far_m *= place.scale;
+    built.model_cameras.push_back({place.name, std::move(camera)});
+  }
+  if (!place.with_lights) return;
+  for (layers::Light light : model.lights) {
+    light.node = placed(light.node);
+    light.attenuation /= layers::dvec3(1, place.scale, place.scale * place.scale);
+    light.range_m *= place.scale;
+    built.scene.lights.push_back(std::move(light));
+  }
+}
+
+/// Nodes, skins, tracks and parts of one instance below its carrier.
+void add_instance(BuiltScene& built, const ImportedModel& model, const SharedContent& content,
+                  const InstancePlace& place) {
   layers::Scene& scene = built.scene;
   const std::size_t nodes = scene.nodes.size(), skins = scene.skins.size();
   for (layers::Node node : model.scene.nodes) {
-    node.parent = node.parent < 0 ? carrier : shifted(node.parent, nodes);
+    node.parent = node.parent < 0 ? place.carrier : shifted(node.parent, nodes);
     scene.nodes.push_back(std::move(node));
   }
   for (layers::Skin skin : model.scene.skins) {
@@ -88,7 +116,7 @@ void add_instance(BuiltScene& built, const ImportedModel& model, const SharedCon
     scene.tracks.push_back(std::move(track));
   }
   for (layers::Part part : model.scene.parts) {
-    part.name = name + "/" + part.name;
+    part.name = place.name + "/" + part.name;
     part.node = shifted(part.node, nodes);
     part.mesh = shifted(part.mesh, content.meshes);
     part.material = shifted(part.material, content.materials);
@@ -97,6 +125,7 @@ void add_instance(BuiltScene& built, const ImportedModel& model, const SharedCon
   }
   for (const LayerTag& tag : model.layer_tags)
     built.layer_tags.push_back({shifted(tag.node, nodes), tag.layer});
+  add_view(built, model.scene, place, nodes);
 }
 
 /// Turned, scaled and, if wished, centred.
@@ -124,7 +153,8 @@ void add_model(BuiltScene& built, const ModelRecipe& recipe, const std::vector<s
   const layers::Transform fit = fitting(recipe, model.scene);
   for (const ModelInstance& instance : recipe.instances) {
     const int carrier = add_motion(built, instance.name, instance.motion);
-    add_instance(built, model, content, add_node(built.scene, "fit", carrier, fit), instance.name);
+    const int fitted = add_node(built.scene, "fit", carrier, fit);
+    add_instance(built, model, content, {instance.name, fitted, fit.scale.x, recipe.lights});
   }
 }
 
@@ -168,12 +198,39 @@ void add_shape(BuiltScene& built, const ShapeRecipe& recipe) {
   scene.materials.push_back(std::move(material));
 }
 
-void add_camera(BuiltScene& built, const CameraRecipe& recipe) {
+const layers::Camera& camera_of_model(const BuiltScene& built, const CameraRecipe& recipe) {
+  std::vector<std::string> models, cameras;
+  for (const ModelCamera& there : built.model_cameras) {
+    models.push_back(there.model);
+    if (there.model != recipe.model) continue;
+    if (recipe.named.empty() || there.camera.name == recipe.named) return there.camera;
+    cameras.push_back(there.camera.name);
+  }
+  const std::string what = cameras.empty() ? "camera is of model '" + recipe.model +
+                                                 "', rule: the name of an instance with a camera" +
+                                                 did_you_mean(recipe.model, models)
+                                           : "camera is '" + recipe.named + "', rule: a camera of model '" +
+                                                 recipe.model + "': " + quoted(cameras);
+  throw InputError(what, recipe.motion.file, recipe.motion.line);
+}
+
+void add_camera(BuiltScene& built, const CameraRecipe& recipe, double turn_s) {
   layers::Scene& scene = built.scene;
+  if (!recipe.model.empty()) {
+    scene.cameras.push_back(camera_of_model(built, recipe));
+    return;
+  }
+  const double fov_y_rad = glm::radians(recipe.fov_deg);
+  if (recipe.orbit) {
+    const OrbitRecipe& orbit = *recipe.orbit;
+    add_orbit(scene, {orbit.center, orbit.distance_m, orbit.elevation_rad, turn_s, fov_y_rad, recipe.near_m,
+                      recipe.far_m});
+    return;
+  }
   layers::Camera camera;
   camera.name = "camera";
   camera.node = add_motion(built, "camera", recipe.motion);
-  camera.fov_y_rad = glm::radians(recipe.fov_deg);
+  camera.fov_y_rad = fov_y_rad;
   camera.near_m = recipe.near_m;
   camera.far_m = recipe.far_m;
   scene.cameras.push_back(camera);
@@ -212,7 +269,7 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   if (recipe.terrain) add_terrain(built.scene, *recipe.terrain);
   for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);
   for (const ModelRecipe& model : recipe.models) add_model(built, model, recipe.assets);
-  if (recipe.camera) add_camera(built, *recipe.camera);
+  if (recipe.camera) add_camera(built, *recipe.camera, recipe.turntable_s);
   add_lights(built, recipe.lights);
   add_default_view(built.scene, recipe.turntable_s);
   for (layers::Light& light : built.scene.lights) light.color /= static_cast<float>(recipe.exposure_lx);

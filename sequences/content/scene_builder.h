@@ -14,16 +14,22 @@
 
 namespace talisman::sequences {
 
+struct ModelCamera {
+  std::string model;  ///< the name of its instance
+  layers::Camera camera;
+};
+
 struct BuiltScene {
   layers::Scene scene;
   std::vector<LayerTag> layer_tags;
   std::vector<std::string> warnings;
-  std::vector<std::string> files = {};       ///< that were opened for it: Sequence::content_files
-  std::map<std::string, int> carriers = {};  ///< the node of each shape that can carry others, by its name
+  std::vector<std::string> files = {};          ///< that were opened for it: Sequence::content_files
+  std::map<std::string, int> carriers = {};     ///< the node of each shape that can carry others, by its name
+  std::vector<ModelCamera> model_cameras = {};  ///< of which the recipe may choose one
 };
 
 /// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of
-/// default_view.h; cameras and lights inside its models are not used. Throws InputError for an asset that
+/// default_view.h; cameras and lights inside its models are used where it says so. Throws InputError for an asset that
 /// cannot be read, a name that is given twice and a carrier that is not there.
 BuiltScene build_scene(const SceneRecipe& recipe);
 

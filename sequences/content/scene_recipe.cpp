@@ -8,6 +8,26 @@ namespace talisman::sequences {
 
 namespace {
 
+const Table<OrbitRecipe>& orbit_keys() {
+  using O = OrbitRecipe;
+  static const Table<O> table =
+      Table<O>("orbit")
+          .key("center", &O::center, vector(), "m", "what it goes round and looks at")
+          .key("distance_m", &O::distance_m, number(kPositive), "m", "from there")
+          .key("elevation_deg", &O::elevation_rad, degrees({-90, 90}), "°", "how far above it");
+  return table;
+}
+
+const std::vector<std::string> kMotionKeys = {"carried_by", "position", "rotation_deg",
+                                              "look_at",    "flight",   "spin"};
+
+/// Keys of a camera that one of a model has from its file.
+std::vector<std::string> keys_of_a_view() {
+  std::vector<std::string> keys = {"fov_deg", "near_m", "far_m", "orbit"};
+  keys.insert(keys.end(), kMotionKeys.begin(), kMotionKeys.end());
+  return keys;
+}
+
 const Table<CameraRecipe>& camera_keys() {
   using C = CameraRecipe;
   static const Table<C> table =
@@ -16,6 +36,15 @@ const Table<CameraRecipe>& camera_keys() {
           .key("near_m", &C::near_m, number(kPositive), "m", "what is nearer is not drawn")
           .key("far_m", &C::far_m, number(kPositive), "m", "nor what is farther")
           .rule("near_m below far_m", [](const C& camera) { return camera.near_m < camera.far_m; })
+          .key("orbit", &C::orbit, map_of(orbit_keys()), "",
+               "goes round a place, once in the seconds of `turntable`")
+          .not_with(kMotionKeys)
+          .key("model", &C::model, with_rule(text(), "the name of an instance with a camera"), "",
+               "the view of a camera in that model's file, which moves as it does there")
+          .not_with(keys_of_a_view())
+          .key("named", &C::named, text(), "", "which of its cameras")
+          .otherwise("the first")
+          .only_with("model")
           .include(&C::motion, motion_keys());
   return table;
 }
@@ -38,7 +67,7 @@ const Table<SceneRecipe>& scene_keys() {
           .key("camera", &S::camera, map_of(camera_keys()), "", "from where it is seen")
           .otherwise("an orbit around everything")
           .key("turntable", &S::turntable_s, number(kPositive), "s",
-               "one turn of the orbiting camera; of no meaning where there is a camera")
+               "one turn of the orbiting camera; of no meaning where the camera does not orbit")
           .key("lights", &S::lights, list_of(light_keys()), "", "at most four of them cast shadows")
           .otherwise("a sun and ambient light")
           .key("exposure", &S::exposure_lx, number(kPositive), "",

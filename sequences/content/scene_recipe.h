@@ -28,6 +28,7 @@ struct ModelRecipe {
   layers::dvec3 turn_deg{0, 0, 0};  ///< about x, then y, then z
   bool centered = false;            ///< the middle of the bounds becomes the origin
   bool two_sided = false;           ///< for files with careless windings
+  bool lights = false;              ///< those of the file shine, too
   std::vector<ModelInstance> instances;
 };
 
@@ -36,8 +37,17 @@ struct ShapeRecipe {
   std::vector<ModelInstance> instances;  ///< parts are called like them
 };
 
+/// An orbit about y (default_view.h) that takes SceneRecipe::turntable_s for a turn.
+struct OrbitRecipe {
+  layers::dvec3 center{0, 0, 0};
+  double distance_m = 5;
+  double elevation_rad = 0;
+};
+
 struct CameraRecipe {
   double fov_deg = 50, near_m = 0.1, far_m = 10000;
+  std::optional<OrbitRecipe> orbit;  ///< instead of a motion
+  std::string model, named;          ///< instead of all else: a camera of this model; empty: its first
   Motion motion;
 };
 

@@ -2,12 +2,10 @@
 #include "sequences/content/sequence.h"
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
-#include <map>
 
 #include "sequences/content/asset_paths.h"
-#include "sequences/content/default_view.h"
+#include "sequences/content/bare_model.h"
 #include "sequences/content/nearest_word.h"
 #include "sequences/content/scene_builder.h"
 #include "sequences/content/sequence_file.h"
@@ -17,47 +15,9 @@ namespace talisman::sequences {
 
 namespace {
 
-constexpr double kMaxModel_s = 20;   // longer animations are cut
-constexpr double kTurntable_s = 20;  // one turn around a bare model
-
 bool is_yaml(const std::string& path) {
   const std::string extension = std::filesystem::path(path).extension().string();
   return extension == ".yaml" || extension == ".yml";
-}
-
-/// The layer tag of the nearest tagged node above (or at) each node; empty: none.
-std::vector<std::string> tags_of_nodes(const layers::Scene& scene, const std::vector<LayerTag>& tags) {
-  std::vector<std::string> tag_of(scene.nodes.size());
-  for (const LayerTag& tag : tags) tag_of[tag.node] = tag.layer;
-  for (std::size_t i = 0; i < tag_of.size(); ++i)
-    if (tag_of[i].empty() && scene.nodes[i].parent >= 0) tag_of[i] = tag_of[scene.nodes[i].parent];
-  return tag_of;
-}
-
-/// Layers that the model's author named, then what the moving and top-level nodes give for the rest.
-std::vector<layers::LayerSpec> specs_of_model(const layers::Scene& scene, const std::vector<LayerTag>& tags) {
-  const std::vector<std::string> tag_of = tags_of_nodes(scene, tags);
-  std::vector<layers::LayerSpec> specs;
-  std::map<std::string, std::size_t> spec_of;
-  std::vector<std::string> tagged_parts;
-  for (const layers::Part& part : scene.parts) {
-    const std::string& layer = tag_of[part.node];
-    if (layer.empty()) continue;
-    const auto [entry, is_new] = spec_of.emplace(layer, specs.size());
-    if (is_new) specs.push_back({layer, {}, layers::OrderGroup::Normal, {}});
-    std::string glob = part.name;
-    std::replace(glob.begin(), glob.end(), '*', '?');
-    specs[entry->second].part_globs.push_back(glob);
-    tagged_parts.push_back(glob);
-  }
-  for (layers::LayerSpec& spec : layers::default_layer_specs(scene)) {
-    std::erase_if(spec.part_globs, [&](const std::string& glob) {
-      return std::find(tagged_parts.begin(), tagged_parts.end(), glob) != tagged_parts.end();
-    });
-    while (spec_of.count(spec.name)) spec.name += "'";
-    if (!spec.part_globs.empty()) specs.push_back(std::move(spec));
-  }
-  return specs;
 }
 
 std::vector<std::string> parts_in_no_layer(const layers::Scene& scene, const layers::LayerSet& set) {
@@ -71,6 +31,20 @@ std::vector<std::string> parts_in_no_layer(const layers::Scene& scene, const lay
   return names;
 }
 
+/// The nearest name, or those whose end is near: "hul" is 'ship/hull'.
+std::string did_you_mean_part(std::string glob, const std::vector<std::string>& parts) {
+  std::erase(glob, '*');
+  if (const std::string nearest = did_you_mean(glob, parts); !nearest.empty()) return nearest;
+  std::vector<std::string> ends, near;
+  const std::string end = glob.substr(glob.rfind('/') + 1);
+  const auto end_of = [](const std::string& part) { return part.substr(part.rfind('/') + 1); };
+  for (const std::string& part : parts) ends.push_back(end_of(part));
+  const std::string nearest = nearest_word(end, ends);
+  for (const std::string& part : parts)
+    if (!nearest.empty() && end_of(part) == nearest) near.push_back(part);
+  return near.empty() ? "" : "; did you mean " + quoted(near);
+}
+
 /// "; did you mean 'ship/hull'", or what there is, of the first glob that matches no part; empty where all do.
 std::string help_with_globs(const layers::Scene& scene, const std::vector<std::string>& globs) {
   std::vector<std::string> parts;
@@ -79,7 +53,7 @@ std::string help_with_globs(const layers::Scene& scene, const std::vector<std::s
     if (std::any_of(parts.begin(), parts.end(),
                     [&](const std::string& part) { return layers::glob_matches(glob, part); }))
       continue;
-    const std::string nearest = did_you_mean(glob, parts);
+    const std::string nearest = did_you_mean_part(glob, parts);
     return nearest.empty() ? "; parts are " + quoted(parts) : nearest;
   }
   return {};
@@ -138,38 +112,21 @@ Sequence load_yaml(const std::string& path, const ContentOptions& options) {
   return sequence;
 }
 
-/// The lights of the file as they are under another exposure.
-void expose(ImportedModel& model, double exposure_lx) {
-  for (layers::Light& light : model.scene.lights)
-    light.color *= static_cast<float>(model.exposure_lx / exposure_lx);
-  if (!model.scene.lights.empty())
-    model.notes.push_back("the exposure that was asked for, " + shown(exposure_lx) +
-                          " lx, takes the place of the file's");
-}
-
-/// As many as the animation lasts, else one turn of the camera.
-int frames_of_model(const layers::Scene& scene, double turntable_s, double fps) {
-  const double duration = std::min(scene.duration_s(), kMaxModel_s);
-  const double frames = std::round((duration > 0 ? duration : turntable_s) * fps);
-  return static_cast<int>(std::clamp<double>(frames, 1, kLongestRun_frames));
-}
-
 Sequence load_model(const std::string& path, const ContentOptions& options) {
-  ImportedModel model = import_model(path, {}, options.assets);
+  BareModel bare = read_bare_model(path, options);
   Sequence sequence;
   sequence.content = options;
-  const double turntable_s = options.turntable_s.value_or(kTurntable_s);
   sequence.name = std::filesystem::path(path).stem().string();
   sequence.file = path;
-  sequence.frames = frames_of_model(model.scene, turntable_s, sequence.fps);
-  if (options.exposure_lx) expose(model, *options.exposure_lx);
-  std::vector<layers::LayerSpec> specs = specs_of_model(model.scene, model.layer_tags);
-  add_model_view(model.scene, specs, {turntable_s, options.stage, options.exposure_lx.value_or(1)});
-  for (const std::string& note : model.notes) sequence.notes.push_back(path + ": " + note);
+  sequence.fps = bare.fps;
+  sequence.frames = bare.frames;
+  std::vector<layers::LayerSpec> specs = std::move(bare.specs);
+  add_model_view(bare.model.scene, specs, bare.view);
+  for (const std::string& note : bare.model.notes) sequence.notes.push_back(path + ": " + note);
   BuiltScene built;
-  built.scene = std::move(model.scene);
-  for (const std::string& warning : model.warnings) built.warnings.push_back(path + ": " + warning);
-  built.files = files_read(model);
+  built.scene = std::move(bare.model.scene);
+  for (const std::string& warning : bare.model.warnings) built.warnings.push_back(path + ": " + warning);
+  built.files = files_read(bare.model);
   finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) throw InputError(sequence.layers.defect, path);
   return sequence;

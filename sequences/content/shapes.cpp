@@ -112,6 +112,16 @@ void add_cap(Mesh& mesh, const dvec3& size, double share, double side, int segme
   }
 }
 
+/// A fan from the first corner, and no vertex in the middle: a disc of n corners has n - 2 triangles.
+void add_disc(Mesh& mesh, const dvec3& size, int segments) {
+  for (int c = 0; c < segments; ++c) {
+    const dvec2 a = around(c, segments);
+    add_vertex(mesh, {0.5 * size.x * a.x, 0, 0.5 * size.z * a.y}, {0, 1, 0}, 0.5 + 0.5 * a);
+    if (c >= 2)
+      mesh.indices.insert(mesh.indices.end(), {0u, static_cast<unsigned>(c - 1), static_cast<unsigned>(c)});
+  }
+}
+
 }  // namespace
 
 layers::Mesh shape_mesh(const ShapeContent& shape) {
@@ -130,6 +140,9 @@ layers::Mesh shape_mesh(const ShapeContent& shape) {
       break;
     case ShapeContent::Kind::Plane:
       add_face(mesh, dvec3(0), {shape.size_m.x, 0, 0}, {0, 0, -shape.size_m.z}, shape.segments);
+      break;
+    case ShapeContent::Kind::Disc:
+      add_disc(mesh, shape.size_m, shape.segments);
       break;
   }
   return mesh;

@@ -9,6 +9,7 @@ namespace talisman::sequences {
 
 namespace {
 constexpr int kBarWidth = 30;
+constexpr int kPercentPerLine = 10;
 
 std::string duration(double seconds) {
   char text[32];
@@ -43,7 +44,9 @@ void Progress::advance() {
 void Progress::print() {
   if (kind_ == ProgressKind::None || total_ <= 0) return;
   const int percent = static_cast<int>(100LL * done_ / total_);
-  if (kind_ == ProgressKind::Plain && percent == last_percent_) return;
+  if (kind_ == ProgressKind::Plain && last_percent_ >= 0 &&
+      percent / kPercentPerLine == last_percent_ / kPercentPerLine)
+    return;
   last_percent_ = percent;
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
   const double per_second = seconds > 0 ? (done_ - done_at_start_) / seconds : 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Progress of long work on stderr: a bar on a terminal, otherwise one flushed "NN%" line per per cent, both
+/// Progress of long work on stderr: a bar on a terminal, otherwise one flushed "NN%" line per ten per cent, both
 /// with frames per second and the time left.
 
 #include <chrono>

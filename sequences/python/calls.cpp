@@ -43,7 +43,6 @@ Call::Call(const std::string& sequence, const std::vector<std::string>& words, b
   sequence_ = load_sequence(line.sequence, content_options(line.content));
   const ResolvedRun resolved = resolve(line, sequence_, plan_only);
   warnings_ = sequence_.warnings;
-  warnings_.insert(warnings_.end(), resolved.warnings.begin(), resolved.warnings.end());
   require_none(warnings_, line.content.strict, sequence_.file);
   settings_ = resolved.settings;
   first_frame_ = resolved.options.first_frame;

@@ -60,19 +60,30 @@ TEST_F(Messages, WholeNumbersThatCannotBeHeldAreRefused) {
   expect_bad_input("plan cube.obj --policy hold --hold 2.5", {"--hold", "2.5", "a whole number"});
 }
 
-// --- Options without effect
+// --- Options of other policies
 
-TEST_F(Messages, OptionsThatThePolicyDoesNotReadAreSaidOnce) {
-  expect_warning("cube.obj --budget-polygons 100" + kShort,
-                 "--budget-polygons has no effect with policy threshold; policy budget reads it");
-  expect_warning("cube.obj --hold 2" + kShort,
-                 "--hold has no effect with policy threshold; the policies hold and interpolate read it");
-  expect_warning("cube.obj --policy oracle --lookahead 4" + kShort,
-                 "--lookahead has no effect with policy oracle; policy lookahead reads it");
-  expect_warning("cube.obj --choice best --cutoff-px 1" + kShort,
-                 "--cutoff-px and --choice have no effect with policy threshold; policy budget reads them");
-  expect_warning("cube.obj --policy reference --geometric-px 2" + kShort,
-                 "--geometric-px has no effect with policy reference");
+TEST_F(Messages, OptionsOfAnotherPolicyAreRefusedWithThePoliciesThatHaveThem) {
+  const std::string plan = "plan cube.obj" + kShort + " ";
+  expect_bad_input(plan + "--budget-polygons 100",
+                   {"--budget-polygons is no option of policy threshold; policy budget has it"});
+  expect_bad_input(plan + "--hold 2",
+                   {"--hold is no option of policy threshold; the policies hold and interpolate have it"});
+  expect_bad_input(plan + "--policy oracle --lookahead 4",
+                   {"--lookahead is no option of policy oracle; policy lookahead has it"});
+  expect_bad_input(plan + "--choice best --cutoff-px 1",
+                   {"--cutoff-px and --choice are no options of policy threshold; policy budget has them"});
+  expect_bad_input(
+      plan + "--policy reference --geometric-px 2",
+      {"--geometric-px is no option of policy reference; the policies threshold, lookahead and oracle"});
+  expect_bad_input("explain cube.obj --frame 1 --hold 3", {"--hold is no option of policy threshold"});
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "out")) << "nothing was begun";
+}
+
+// The policy may be the sequence's own.
+TEST_F(Messages, OptionsAreThoseOfTheSequencesPolicy) {
+  write("held.yaml", "frames: 2\nshapes: [{id: a, box: [1, 1, 1]}]\nregulator: {policy: hold}\n");
+  expect_bad_input("plan held.yaml --geometric-px 2", {"--geometric-px is no option of policy hold"});
+  EXPECT_EQ(run("plan held.yaml --hold 2 --size 64x48 --progress none").exit_code, 0);
 }
 
 TEST_F(Messages, OptionsThatThePolicyReadsAreTakenWithoutAWord) {
@@ -205,6 +216,13 @@ TEST_F(Messages, GlobOfNoPartIsAnsweredWithPartsThatAreThere) {
   expect_bad_input("plan near.yaml", {"near.yaml:4", "'ship'", "'hul'", "did you mean 'hull'"});
   write("other.yaml", box + "layers:\n  - {name: ship, parts: [hull, 'rotor*']}\n");
   expect_bad_input("plan other.yaml", {"other.yaml:4", "'rotor*'", "parts are 'hull', 'mast'"});
+  // Names of models' parts have the instance in front; that is what is forgotten.
+  write("in_model.yaml",
+        "frames: 3\nmodels: [{id: ship, file: two.obj}]\nlayers: [{name: a, parts: ['Hull*']}]\n");
+  write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\no hull\nf 1 2 3\no mast\nf 1 3 2\n");
+  expect_bad_input("plan in_model.yaml", {"in_model.yaml:3", "'Hull*'", "did you mean 'ship/hull'"});
+  write("pairs.yaml", box + "order: [{behind: hul, front: mast}]\n");
+  expect_bad_input("plan pairs.yaml", {"pairs.yaml:3", "'hul' matches no layer", "did you mean 'hull'"});
 }
 
 TEST_F(Messages, BytesThatAreNoGlbNameTheirMagicNumber) {
@@ -226,6 +244,58 @@ TEST_F(Messages, NamesThatAreNearAreAnswered) {
   expect_bad_input("diff cube.obj cube.obj --mapp x",
                    {"'--mapp' is no option of diff; did you mean '--map'?"});
   expect_bad_input("plan cube.obj other.obj", {"'other.obj' is one argument too many for plan"});
+}
+
+// --- Help
+
+TEST_F(Messages, ToolAloneListsItsCommands) {
+  const Outcome outcome = run("");
+  EXPECT_EQ(outcome.exit_code, 2);
+  for (const char* command : {"render", "plan", "explain", "inspect", "init", "diff", "warps"})
+    EXPECT_THAT(outcome.output, HasSubstr(std::string("\n  ") + command + " ")) << command;
+}
+
+TEST_F(Messages, HelpOfRenderHasGroupsDefaultsAndExamples) {
+  const std::string help = run("render --help").output;
+  for (const char* group : {"Run:", "Content:", "Policy:", "Thresholds:", "Budget, of the policy budget:",
+                            "Layers:", "Pictures:", "Examples:"})
+    EXPECT_THAT(help, HasSubstr(std::string("\n") + group)) << group;
+  // regulator/plan.h, layers/sprite_transform.h
+  for (const char* option : {"--policy TEXT=threshold", "--hold INT=3", "--geometric-px FLOAT=4",
+                             "--photometric FLOAT=0.05", "--cutoff-px FLOAT=0.004", "--lookahead INT=16",
+                             "--warp TEXT=aff", "--size TEXT=1024x1024", "--expected-reuse FLOAT=8"})
+    EXPECT_THAT(help, HasSubstr(option)) << option;
+  EXPECT_THAT(help,
+              HasSubstr("trn, trni, iso, isoi, so, soi, aff, affi, per, peri, per2, per2i, pers or pers2"));
+}
+
+TEST_F(Messages, WordsOfAnEnumerationAreAllNamed) {
+  expect_bad_input(
+      "plan cube.obj --warp bend",
+      {"must be one of trn, trni, iso, isoi, so, soi, aff, affi, per, peri, per2, per2i, pers, pers2"});
+  expect_bad_input(
+      "plan cube.obj --policy often",
+      {"must be one of direct, reference, hold, interpolate, threshold, budget, lookahead, oracle"});
+}
+
+// --- Runs that are stopped
+
+TEST_F(Messages, StoppedPlanDoesNotAdviseToResume) {
+  write("long.yaml",
+        "frames: 200000\nshapes: [{id: a, box: [1, 1, 1], spin: {deg_per_s: 9}}]\ncamera: {position: [0, 0, "
+        "5]}\n");
+  const Outcome outcome =
+      run_and_signal("plan long.yaml --progress none --out p", "p/decisions.jsonl.partial", "INT");
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("stopped after "), Not(HasSubstr("--resume"))));
+}
+
+TEST_F(Messages, ProgressOfAFileIsALineForTenPerCent) {
+  const Outcome outcome = run("plan cube.obj --frames 0-199 --size 64x48 --quiet --progress plain");
+  EXPECT_EQ(count_of("%", outcome.output), 0) << "quiet is quiet";
+  const Outcome told = run("plan cube.obj --frames 0-199 --size 64x48 --progress plain > table.txt");
+  EXPECT_EQ(count_of("\n", told.output), 11) << told.output;  // the first frame, then 10 % … 100 %
+  EXPECT_THAT(told.output, AllOf(HasSubstr("10% "), HasSubstr("50% "), HasSubstr("100% ")));
 }
 
 // --- Runs that take the place of others

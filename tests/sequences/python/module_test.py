@@ -194,10 +194,19 @@ class Plan(unittest.TestCase):
                 talisman.plan("carousel", geometric_px=value)
 
     def test_warnings_are_errors_where_that_is_asked_for(self):
-        with self.assertWarnsRegex(UserWarning, "--hold has no effect with policy threshold"):
+        with tempfile.TemporaryDirectory() as folder:
+            sequence = os.path.join(folder, "spare.yaml")
+            with open(sequence, "w") as file:
+                file.write("frames: 1\nshapes: [{id: a, box: [1, 1, 1]}, {id: b, box: [1, 1, 1]}]\n"
+                           "layers: [{name: a, parts: [a]}]\n")
+            with self.assertWarnsRegex(UserWarning, "1 part is taken by no layer and is not drawn: 'b'"):
+                talisman.plan(sequence)
+            with self.assertRaisesRegex(ValueError, "1 warning, rule with --strict: none"):
+                talisman.plan(sequence, strict=True)
+
+    def test_options_of_another_policy_are_refused(self):
+        with self.assertRaisesRegex(ValueError, "--hold is no option of policy threshold"):
             talisman.plan("carousel", frames="0", policy="threshold", hold=2)
-        with self.assertRaisesRegex(ValueError, "1 warning, rule with --strict: none"):
-            talisman.plan("carousel", frames="0", policy="threshold", hold=2, strict=True)
 
     def test_a_broken_file_is_told_by_file_and_line(self):
         with tempfile.NamedTemporaryFile("w", suffix=".yaml") as file:
