@@ -43,12 +43,7 @@ layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
 layers::Texture read_reference(Import& import, const std::string& reference) {
   if (const aiTexture* embedded = import.from.GetEmbeddedTexture(reference.c_str()))
     return read_embedded(*embedded, reference);
-  const std::string file = find_texture(import.place, reference, import.files);
-  if (file.empty()) throw InputError("is missing");
-  import.files.look_for(file);
-  layers::Texture texture = read_texture(file);
-  texture.name = fs::path(file).filename().string();
-  return texture;
+  return read_named_texture(import.place, reference, import.files);
 }
 
 /// Index of the material's colour texture; -1: none, or missing (a warning, once per reference).
@@ -67,7 +62,7 @@ int material_texture(Import& import, const aiMaterial& from, bool opaque) {
     import.model.scene.textures.push_back(std::move(texture));
     entry->second = static_cast<int>(import.model.scene.textures.size()) - 1;
   } catch (const InputError& e) {
-    import.warn("texture '" + reference + "': " + e.what() + "; a plain colour is used");
+    import.warn(missing_texture(reference, e.what()));
   }
   return entry->second;
 }

@@ -289,17 +289,4 @@ ImportedModel read_with_assimp(const ModelPlace& place) {
   return std::move(import.model);
 }
 
-ImportedModel with_assimp_materials(const ModelPlace& place, const std::string& content, FileUses& files,
-                                    const std::function<void(const aiScene&)>& look) {
-  Assimp::Importer importer;
-  importer.SetIOHandler(new ReplacedModel(place, files, content));
-  const aiScene* from = importer.ReadFile(place.path, 0);
-  if (!from || !from->mRootNode)
-    throw InputError(std::string("its materials cannot be read: ") + importer.GetErrorString());
-  Import import(*from, place, files);
-  import_materials(import);
-  look(*from);
-  return std::move(import.model);
-}
-
 }  // namespace talisman::sequences

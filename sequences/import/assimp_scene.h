@@ -5,7 +5,6 @@
 /// links assimp.
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -19,11 +18,6 @@ namespace talisman::sequences {
 
 /// Reads the file. Throws InputError without the file's name, which the parent puts in front.
 ImportedModel read_with_assimp(const ModelPlace& place);
-
-/// The materials of a model whose file holds `content`, which assimp can read; `look` may look at the rest of what
-/// assimp made of it. Throws InputError likewise.
-ImportedModel with_assimp_materials(const ModelPlace& place, const std::string& content, FileUses& files,
-                                    const std::function<void(const aiScene&)>& look);
 
 /// What the steps of one import have in common.
 struct Import {

@@ -4,24 +4,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <filesystem>
 #include <numeric>
-#include <optional>
-#include <unordered_map>
 
 #include <glm/geometric.hpp>
 
-#define TINYOBJLOADER_USE_DOUBLE
-#include <tiny_obj_loader.h>
-
-#include "sequences/import/assimp_scene.h"
 #include "sequences/import/ear_clipping.h"
 #include "sequences/import/lower_case.h"
+#include "sequences/import/obj_faults.h"
 #include "sequences/import/obj_libraries.h"
+#include "sequences/import/obj_meshes.h"
 #include "sequences/import/obj_text.h"
 #include "sequences/import/wide_text.h"
-#include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
 
@@ -37,7 +31,7 @@ constexpr const char* kNoName = "defaultobject";
 struct ObjWords {
   std::vector<std::string> libraries;  ///< what is behind each "mtllib"
   std::vector<std::string> materials;  ///< in the order of their first use
-  std::map<std::string, int> id_of;    ///< by the first word, as the geometry's reader has it
+  std::map<std::string, int> id_of;    ///< by the name as ObjText has it
   bool has_smoothing = false;          ///< it says somewhere what is smooth, or that nothing is
   std::vector<std::string> losses;     ///< what it has and the picture has not
   std::map<std::size_t, std::size_t>
@@ -66,10 +60,10 @@ void count_face(const std::string& line, std::size_t at, std::size_t& faces, Obj
 }
 
 /// The geometry's reader takes what is no number for 0.
-void check_numbers(const std::string& line) {
+void check_numbers(const std::string& path, const std::string& line) {
   if (line.find_first_of("nNiI", line.find_first_of(" \t")) == std::string::npos) return;
   if (line.find_first_of(" \t") != std::string::npos)
-    throw InputError("a mesh has '" + line.substr(0, 60) + "', rule: finite numbers");
+    throw InputError(line_of(path, line) + "a mesh has '" + line.substr(0, 60) + "', rule: finite numbers");
 }
 
 /// Free-form geometry.
@@ -87,17 +81,17 @@ ObjWords words_of(const std::string& path) {
   for (std::string line; std::getline(in, line);) {
     const std::size_t at = line.find_first_not_of(" \t");
     if (at == std::string::npos) continue;
-    if (line[at] == 'v') check_numbers(line);
+    if (line[at] == 'v') check_numbers(path, line);
     if (line[at] == 'f') count_face(line, at + 1, faces, words);
     if (line[at] == 's' && line.find_first_of(" \t", at) == at + 1) words.has_smoothing = true;
     if (line[at] != 'f' && !has_curves) has_curves = is_curve(line, at);
     if (line[at] != 'm' && line[at] != 'u') continue;
     if (line.compare(at, 6, "mtllib") == 0) words.libraries.push_back(rest_of_line(line, at + 6));
     if (line.compare(at, 6, "usemtl") != 0) continue;
-    const std::string name = rest_of_line(line, at + 6);
-    const std::string first = name.substr(0, name.find_first_of(" \t"));
-    if (words.id_of.emplace(first, static_cast<int>(words.materials.size())).second)
-      words.materials.push_back(name);
+    std::string name = rest_of_line(line, at + 6);
+    if (!words.id_of.emplace(name, static_cast<int>(words.materials.size())).second) continue;
+    std::replace(name.begin(), name.end(), kKeptSpace, ' ');
+    words.materials.push_back(name);
   }
   if (has_curves) words.losses.emplace_back("curves and surfaces are not drawn");
   return words;
@@ -118,25 +112,18 @@ class NumberMaterials : public tinyobj::MaterialReader {
   const ObjWords& words_;
 };
 
-struct ObjContent {
-  tinyobj::attrib_t attributes;
-  std::vector<tinyobj::shape_t> shapes;  ///< of triangles
-  bool has_groups = false;               ///< it says what is smooth: what is in no group is flat
-};
-
-dvec3 place_of(const tinyobj::attrib_t& attributes, int vertex) {
-  const std::size_t at = 3 * static_cast<std::size_t>(vertex);
-  return {attributes.vertices[at], attributes.vertices[at + 1], attributes.vertices[at + 2]};
+[[noreturn]] void refuse_faces(const std::string& path, const std::string& otherwise) {
+  const std::string face = bad_face(path);
+  throw InputError("cannot be read as a model: " + (face.empty() ? otherwise : face));
 }
 
-void check_corners(const ObjContent& content) {
+void check_corners(const std::string& path, const ObjContent& content) {
   const auto count = static_cast<int>(content.attributes.vertices.size() / 3);
   for (const tinyobj::shape_t& shape : content.shapes)
     for (const tinyobj::index_t& corner : shape.mesh.indices)
       if (corner.vertex_index < 0 || corner.vertex_index >= count)
-        throw InputError("cannot be read as a model: a face names vertex " +
-                         std::to_string(corner.vertex_index + 1) + ", rule: from 1 to " +
-                         std::to_string(count));
+        refuse_faces(path, "a face names vertex " + std::to_string(corner.vertex_index + 1) +
+                               ", rule: from 1 to " + std::to_string(count));
 }
 
 /// Corners of each face of a shape, whose first is the `face`th of the file.
@@ -184,8 +171,8 @@ ObjContent content_of(const std::string& path, const ObjWords& words) {
   std::string warning, error;
   if (!tinyobj::LoadObj(&content.attributes, &content.shapes, &unused, &warning, &error, &in, &numbers, false,
                         false))
-    throw InputError("cannot be read as a model: " + error.substr(0, error.find('\n')));
-  check_corners(content);
+    refuse_faces(path, error.substr(0, error.find('\n')));
+  check_corners(path, content);
   content.has_groups = words.has_smoothing;
   std::size_t face = 0;
   for (tinyobj::shape_t& shape : content.shapes) {
@@ -196,33 +183,61 @@ ObjContent content_of(const std::string& path, const ObjWords& words) {
   return content;
 }
 
-/// Materials as assimp has them: fills model.scene.materials and textures. The number of each of `words.materials`,
-/// and last that of the default one.
-std::vector<int> materials_of(ImportedModel& model, const ModelPlace& place, const ObjWords& words,
-                              bool has_colors, FileUses& files) {
-  const std::string color = has_colors ? " 1 1 1\n" : "\n";
-  const ObjLibraries libraries(place, words.libraries, files);
-  std::string text = libraries.lines() + "v 0 0 0" + color + "v 1 0 0" + color + "v 0 1 0" + color;
-  text += "o m" + std::to_string(words.materials.size()) + "\nf 1 2 3\n";
-  for (std::size_t k = 0; k < words.materials.size(); ++k)
-    text += "o m" + std::to_string(k) + "\nusemtl " + words.materials[k] + "\nf 1 2 3\n";
-  std::vector<int> numbers(words.materials.size() + 1, 0);
-  ImportedModel looks = with_assimp_materials(place, text, files, [&](const aiScene& scene) {
-    for (unsigned i = 0; i < scene.mRootNode->mNumChildren; ++i) {
-      const aiNode& node = *scene.mRootNode->mChildren[i];
-      const std::size_t k = std::strtoul(node.mName.C_Str() + 1, nullptr, 10);
-      if (node.mNumMeshes > 0 && k < numbers.size())
-        numbers[k] = static_cast<int>(scene.mMeshes[node.mMeshes[0]]->mMaterialIndex);
+/// The looks of `words.materials`, and last of what has none.
+class Looks {
+ public:
+  Looks(ImportedModel& model, const ModelPlace& place, const ObjWords& words, bool has_colors,
+        FileUses& files)
+      : model_(model), place_(place), files_(files) {
+    const ObjLibraries libraries(place, words.libraries, files);
+    model.warnings.insert(model.warnings.end(), libraries.missing().begin(), libraries.missing().end());
+    if (const std::string unknown = libraries.unknown(words.materials); !unknown.empty())
+      model.warnings.push_back(unknown);
+    for (const std::string& name : words.materials) {
+      const ObjMaterial* found = libraries.find(name);
+      ObjMaterial material = found ? *found : default_obj_material();
+      material.look.name = name;
+      add(material);
     }
-  });
-  model.scene.materials = std::move(looks.scene.materials);
-  model.scene.textures = std::move(looks.scene.textures);
-  model.warnings = libraries.missing();
-  if (const std::string unknown = libraries.unknown(words.materials); !unknown.empty())
-    model.warnings.push_back(unknown);
-  model.warnings.insert(model.warnings.end(), looks.warnings.begin(), looks.warnings.end());
-  return numbers;
-}
+    ObjMaterial none = default_obj_material();
+    if (has_colors) none.look.base_color = layers::vec3(1);  // those of the vertices are meant alone
+    add(none);
+  }
+  /// -1: the last.
+  int number(int id) const { return id < 0 ? static_cast<int>(placings_.size()) - 1 : id; }
+  const MapPlacing& placing(int id) const { return placings_[static_cast<std::size_t>(number(id))]; }
+
+ private:
+  void add(const ObjMaterial& from) {
+    layers::Material look = from.look;
+    if (!from.map.empty()) look.texture = texture(from.map, from.placing.clamped);
+    model_.scene.materials.push_back(look);
+    placings_.push_back(from.placing);
+    for (const std::string& loss : from.losses)
+      if (std::find(model_.warnings.begin(), model_.warnings.end(), loss) == model_.warnings.end())
+        model_.warnings.push_back(loss);
+  }
+
+  int texture(const std::string& written, bool clamped) {
+    const auto [entry, is_new] = texture_of_.emplace(std::pair(written, clamped), -1);
+    if (!is_new) return entry->second;
+    try {
+      layers::Texture texture = read_named_texture(place_, written, files_);
+      if (clamped) texture.wrap_u = texture.wrap_v = layers::Wrap::Clamp;
+      model_.scene.textures.push_back(std::move(texture));
+      entry->second = static_cast<int>(model_.scene.textures.size()) - 1;
+    } catch (const InputError& e) {
+      model_.warnings.push_back(missing_texture(written, e.what()));
+    }
+    return entry->second;
+  }
+
+  ImportedModel& model_;
+  const ModelPlace& place_;
+  FileUses& files_;
+  std::vector<MapPlacing> placings_;
+  std::map<std::pair<std::string, bool>, int> texture_of_;
+};
 
 /// The middle of all vertices, where they lie far from the file's origin; else zero.
 dvec3 origin_of(const ObjContent& content) {
@@ -236,152 +251,7 @@ dvec3 origin_of(const ObjContent& content) {
   return size > 0 && std::isfinite(away) && away > kFarAway * size ? glm::round(0.5 * (lo + hi)) : dvec3(0);
 }
 
-/// Normals of a file without any.
-class SmoothNormals {
- public:
-  explicit SmoothNormals(const ObjContent& content) : content_(content) {
-    number_places();
-    for (const tinyobj::shape_t& shape : content.shapes)
-      for (std::size_t f = 0; 3 * f < shape.mesh.indices.size(); ++f) {
-        const dvec3 n = flat(shape.mesh, f);
-        for (std::size_t k = 0; k < 3; ++k) sum_at(shape.mesh, f, k) += n;
-      }
-  }
-  layers::vec3 at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner) {
-    const bool is_flat = content_.has_groups && mesh.smoothing_group_ids[face] == 0;
-    const dvec3 n = is_flat ? flat(mesh, face) : sum_at(mesh, face, corner);
-    const double length = glm::length(n);
-    return length > 1e-12 ? layers::vec3(n / length) : layers::vec3(0, 1, 0);
-  }
-
- private:
-  struct Hash {
-    std::size_t operator()(const dvec3& p) const {
-      std::uint64_t hash = 0, bits = 0;
-      for (int k = 0; k < 3; ++k) {
-        std::memcpy(&bits, &p[k], sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 29;
-      }
-      return hash;
-    }
-  };
-
-  /// Vertices at one place are one.
-  void number_places() {
-    std::unordered_map<dvec3, std::uint32_t, Hash> number_of;
-    const int count = static_cast<int>(content_.attributes.vertices.size() / 3);
-    number_of.reserve(static_cast<std::size_t>(count));
-    place_.reserve(static_cast<std::size_t>(count));
-    for (int i = 0; i < count; ++i)
-      place_.push_back(
-          number_of.emplace(place_of(content_.attributes, i) + 0.0, number_of.size()).first->second);
-    sums_.resize(number_of.size(), dvec3(0));
-  }
-  dvec3& sum_at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner) {
-    const std::uint32_t place =
-        place_[static_cast<std::size_t>(mesh.indices[3 * face + corner].vertex_index)];
-    const std::uint64_t group = content_.has_groups ? mesh.smoothing_group_ids[face] : 0;
-    return group == 0 ? sums_[place] : sums_of_groups_[group << 32 | place];
-  }
-  dvec3 flat(const tinyobj::mesh_t& mesh, std::size_t face) const {
-    dvec3 p[3];
-    for (std::size_t k = 0; k < 3; ++k)
-      p[k] = place_of(content_.attributes, mesh.indices[3 * face + k].vertex_index);
-    const dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
-    const double length = glm::length(n);
-    return length > 0 ? n / length : dvec3(0);
-  }
-
-  const ObjContent& content_;
-  std::vector<std::uint32_t> place_;
-  std::vector<dvec3> sums_;  ///< by place, of what has no group
-  std::unordered_map<std::uint64_t, dvec3> sums_of_groups_;
-};
-
-/// Every combination of place, coordinates and normal once, found by the place.
-class MeshBuilder {
- public:
-  MeshBuilder(const ObjContent& content, const dvec3& origin, SmoothNormals* smooth)
-      : content_(content),
-        origin_(origin),
-        smooth_(smooth),
-        first_(content.attributes.vertices.size() / 3, -1) {}
-
-  layers::Mesh mesh_of(const tinyobj::mesh_t& from, int material) {
-    layers::Mesh mesh;
-    known_.clear(), used_.clear();
-    has_uvs_ = false;
-    for (std::size_t f = 0; 3 * f < from.indices.size(); ++f)
-      if (from.material_ids[f] == material)
-        for (std::size_t k = 0; k < 3; ++k) mesh.indices.push_back(vertex(from, f, k, mesh));
-    for (const int place : used_) first_[static_cast<std::size_t>(place)] = -1;
-    if (!has_uvs_) mesh.uvs.clear();
-    return mesh;
-  }
-
- private:
-  struct Known {
-    int uv = -1;
-    layers::vec3 normal{0};
-    std::uint32_t vertex = 0;
-    int next = -1;
-  };
-
-  layers::vec3 normal_of(const tinyobj::mesh_t& from, std::size_t f, std::size_t k) const {
-    const int index = from.indices[3 * f + k].normal_index;
-    const auto& n = content_.attributes.normals;
-    const std::size_t at = 3 * static_cast<std::size_t>(std::max(index, 0));
-    if (smooth_ || index < 0 || at + 2 >= n.size())
-      return smooth_ ? smooth_->at(from, f, k) : layers::vec3(0, 1, 0);
-    const dvec3 normal(n[at], n[at + 1], n[at + 2]);
-    const double length = glm::length(normal);
-    return length > 1e-12 && std::isfinite(length) ? layers::vec3(normal / length) : layers::vec3(0, 1, 0);
-  }
-
-  std::uint32_t vertex(const tinyobj::mesh_t& from, std::size_t f, std::size_t k, layers::Mesh& mesh) {
-    const tinyobj::index_t& corner = from.indices[3 * f + k];
-    const auto place = static_cast<std::size_t>(corner.vertex_index);
-    const layers::vec3 normal = normal_of(from, f, k);
-    for (int at = first_[place]; at >= 0; at = known_[static_cast<std::size_t>(at)].next) {
-      const Known& known = known_[static_cast<std::size_t>(at)];
-      if (known.uv == corner.texcoord_index && known.normal == normal) return known.vertex;
-    }
-    if (first_[place] < 0) used_.push_back(corner.vertex_index);
-    const auto number = static_cast<std::uint32_t>(mesh.positions.size());
-    known_.push_back({corner.texcoord_index, normal, number, first_[place]});
-    first_[place] = static_cast<int>(known_.size()) - 1;
-    add_vertex(corner, normal, mesh);
-    return number;
-  }
-
-  void add_vertex(const tinyobj::index_t& corner, const layers::vec3& normal, layers::Mesh& mesh) {
-    mesh.positions.emplace_back(place_of(content_.attributes, corner.vertex_index) - origin_);
-    mesh.normals.push_back(normal);
-    const auto& uv = content_.attributes.texcoords;
-    const std::size_t at = 2 * static_cast<std::size_t>(std::max(corner.texcoord_index, 0));
-    const bool has_uv = corner.texcoord_index >= 0 && at + 1 < uv.size();
-    has_uvs_ |= has_uv;
-    mesh.uvs.emplace_back(has_uv ? uv[at] : 0, has_uv ? 1 - uv[at + 1] : 0);
-    const auto& c = content_.attributes.colors;
-    const std::size_t color = 3 * static_cast<std::size_t>(corner.vertex_index);
-    if (color + 2 >= c.size()) return;
-    mesh.colors.push_back({});
-    for (int k = 0; k < 3; ++k)
-      mesh.colors.back()[k] =
-          linear_from_srgb(static_cast<float>(std::max(0.0, c[color + static_cast<std::size_t>(k)])));
-  }
-
-  const ObjContent& content_;
-  dvec3 origin_;
-  SmoothNormals* smooth_;
-  std::vector<int> first_;  ///< by place: the last of its combinations; -1: none
-  std::vector<Known> known_;
-  std::vector<int> used_;
-  bool has_uvs_ = false;
-};
-
-void add_shape(layers::Scene& scene, const tinyobj::shape_t& shape, const std::vector<int>& numbers, int root,
+void add_shape(layers::Scene& scene, const tinyobj::shape_t& shape, const Looks& looks, int root,
                MeshBuilder& builder) {
   std::vector<int> used = shape.mesh.material_ids;
   std::sort(used.begin(), used.end());
@@ -395,8 +265,8 @@ void add_shape(layers::Scene& scene, const tinyobj::shape_t& shape, const std::v
     part.name = used.size() > 1 ? path + "#" + std::to_string(k) : path;
     part.node = static_cast<int>(scene.nodes.size()) - 1;
     part.mesh = static_cast<int>(scene.meshes.size());
-    part.material = used[k] < 0 ? numbers.back() : numbers[static_cast<std::size_t>(used[k])];
-    scene.meshes.push_back(builder.mesh_of(shape.mesh, used[k]));
+    part.material = looks.number(used[k]);
+    scene.meshes.push_back(builder.mesh_of(shape.mesh, used[k], looks.placing(used[k])));
     scene.meshes.back().name = name;
     scene.parts.push_back(part);
   }
@@ -422,22 +292,18 @@ ImportedModel read_obj(const ModelPlace& place) {
   const ObjContent content = content_of(place.path, words);
   ImportedModel model;
   warn_of_losses(content, model);
-  std::vector<std::string> losses = std::move(model.warnings);
-  losses.insert(losses.end(), words.losses.begin(), words.losses.end());
-  const std::vector<int> numbers =
-      materials_of(model, place, words, !content.attributes.colors.empty(), files);
-  model.warnings.insert(model.warnings.begin(), losses.begin(), losses.end());
+  model.warnings.insert(model.warnings.end(), words.losses.begin(), words.losses.end());
+  const Looks looks(model, place, words, !content.attributes.colors.empty(), files);
   const std::filesystem::path file(place.path);
   const dvec3 origin = origin_of(content);
   layers::Scene& scene = model.scene;
   if (origin != dvec3(0)) scene.nodes.push_back({file.stem().string(), -1, {origin}});
   scene.nodes.push_back({file.filename().string(), static_cast<int>(scene.nodes.size()) - 1, {}});
-  std::optional<SmoothNormals> smooth;
-  if (content.attributes.normals.empty()) smooth.emplace(content);
-  MeshBuilder builder(content, origin, smooth ? &*smooth : nullptr);
+  MeshBuilder builder(content, origin);
   const int root = static_cast<int>(scene.nodes.size()) - 1;
-  for (const tinyobj::shape_t& shape : content.shapes) add_shape(scene, shape, numbers, root, builder);
+  for (const tinyobj::shape_t& shape : content.shapes) add_shape(scene, shape, looks, root, builder);
   if (scene.parts.empty()) throw InputError("has no triangles, rule: a model has at least one");
+  for (const std::string& loss : builder.losses()) model.warnings.push_back(loss);
   model.files = files.take();
   return model;
 }
