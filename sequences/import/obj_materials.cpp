@@ -13,6 +13,7 @@
 
 #include <glm/mat3x3.hpp>
 
+#include "sequences/import/bare_surface.h"
 #include "sequences/import/limits.h"
 #include "sequences/import/lower_case.h"
 #include "sequences/import/obj_text.h"
@@ -26,7 +27,6 @@ namespace {
 
 using layers::vec3;
 
-constexpr float kDefaultGrey = 0.6f;  // sRGB
 constexpr float kObjDielectric = 0.04f;
 
 using Words = std::vector<std::string>;
@@ -387,9 +387,7 @@ class LibraryReader {
 
 ObjMaterial default_obj_material() {
   ObjMaterial material;
-  material.look.name = "DefaultMaterial";
-  material.look.base_color = vec3(linear_from_srgb(kDefaultGrey));
-  material.look.two_sided = true;
+  material.look = bare_look();
   return material;
 }
 

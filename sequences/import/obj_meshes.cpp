@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include <glm/geometric.hpp>
 
+#include "sequences/import/bare_surface.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
@@ -20,7 +20,12 @@ dvec3 place_of(const tinyobj::attrib_t& attributes, int vertex) {
 }
 
 SmoothNormals::SmoothNormals(const ObjContent& content) : content_(content) {
-  number_places();
+  std::vector<dvec3> places;
+  const int count = static_cast<int>(content.attributes.vertices.size() / 3);
+  places.reserve(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) places.push_back(place_of(content.attributes, i));
+  place_ = place_numbers(places);
+  sums_.resize(places.size(), dvec3(0));
   for (const tinyobj::shape_t& shape : content.shapes)
     for (std::size_t f = 0; 3 * f < shape.mesh.indices.size(); ++f) {
       const dvec3 n = flat(shape.mesh, f);
@@ -33,28 +38,6 @@ vec3 SmoothNormals::at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_
   const dvec3 n = is_flat ? flat(mesh, face) : sum_at(mesh, face, corner);
   const double length = glm::length(n);
   return length > 1e-12 ? vec3(n / length) : vec3(0, 1, 0);
-}
-
-std::size_t SmoothNormals::Hash::operator()(const dvec3& p) const {
-  std::uint64_t hash = 0, bits = 0;
-  for (int k = 0; k < 3; ++k) {
-    std::memcpy(&bits, &p[k], sizeof bits);
-    hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 29;
-  }
-  return hash;
-}
-
-/// Vertices at one place are one.
-void SmoothNormals::number_places() {
-  std::unordered_map<dvec3, std::uint32_t, Hash> number_of;
-  const int count = static_cast<int>(content_.attributes.vertices.size() / 3);
-  number_of.reserve(static_cast<std::size_t>(count));
-  place_.reserve(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i)
-    place_.push_back(
-        number_of.emplace(place_of(content_.attributes, i) + 0.0, number_of.size()).first->second);
-  sums_.resize(number_of.size(), dvec3(0));
 }
 
 dvec3& SmoothNormals::sum_at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner) {
@@ -95,13 +78,7 @@ void MeshBuilder::add_triangle(const tinyobj::mesh_t& from, std::size_t face, la
     own &= corners[k].normal_is_own;
     mesh.indices.push_back(corners[k].vertex);
   }
-  if (!own) return;
-  const std::vector<vec3>& p = mesh.positions;
-  const vec3 n =
-      glm::cross(p[corners[1].vertex] - p[corners[0].vertex], p[corners[2].vertex] - p[corners[0].vertex]);
-  if (std::all_of(corners, corners + 3,
-                  [&](const Corner& c) { return glm::dot(n, mesh.normals[c.vertex]) < 0; }))
-    std::swap(mesh.indices[mesh.indices.size() - 1], mesh.indices[mesh.indices.size() - 2]);
+  if (own) turn_last_to_normals(mesh);
 }
 
 bool MeshBuilder::has_own_normal(const tinyobj::index_t& corner, vec3& normal) const {

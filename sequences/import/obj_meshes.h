@@ -36,10 +36,6 @@ class SmoothNormals {
   layers::vec3 at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner);
 
  private:
-  struct Hash {
-    std::size_t operator()(const layers::dvec3& p) const;
-  };
-  void number_places();
   layers::dvec3& sum_at(const tinyobj::mesh_t& mesh, std::size_t face, std::size_t corner);
   layers::dvec3 flat(const tinyobj::mesh_t& mesh, std::size_t face) const;
 

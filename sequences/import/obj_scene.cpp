@@ -9,6 +9,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "sequences/import/bare_surface.h"
 #include "sequences/import/ear_clipping.h"
 #include "sequences/import/lower_case.h"
 #include "sequences/import/obj_faults.h"
@@ -23,8 +24,6 @@ namespace {
 
 using layers::dvec3;
 
-/// Coordinates larger than this many sizes keep fewer than 13 bits for the size in a float.
-constexpr double kFarAway = 2000;
 constexpr const char* kNoName = "defaultobject";
 
 /// What the geometry's reader does not say, and what only materials need.
@@ -247,8 +246,7 @@ dvec3 origin_of(const ObjContent& content) {
     const dvec3 p = place_of(content.attributes, i);
     lo = glm::min(lo, p), hi = glm::max(hi, p);
   }
-  const double size = glm::length(hi - lo), away = glm::length(glm::max(glm::abs(lo), glm::abs(hi)));
-  return size > 0 && std::isfinite(away) && away > kFarAway * size ? glm::round(0.5 * (lo + hi)) : dvec3(0);
+  return local_origin(lo, hi);
 }
 
 void add_shape(layers::Scene& scene, const tinyobj::shape_t& shape, const Looks& looks, int root,
