@@ -37,9 +37,11 @@ struct Import {
 };
 
 void import_materials(Import& import);  ///< import_materials.cpp
-void import_motion(Import& import);     ///< import_motion.cpp: tracks of the first animation
-void import_lights(Import& import);     ///< import_motion.cpp
-void import_cameras(Import& import);    ///< import_motion.cpp
+/// By which map a material is coloured: its first one is drawn.
+aiTextureType color_map_of(const aiMaterial& material);
+void import_motion(Import& import);   ///< import_motion.cpp: tracks of the first animation
+void import_lights(Import& import);   ///< import_motion.cpp
+void import_cameras(Import& import);  ///< import_motion.cpp
 
 inline layers::dvec3 to_vector(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 inline glm::dquat to_quaternion(const aiQuaternion& q) { return {q.w, q.x, q.y, q.z}; }

@@ -16,10 +16,10 @@
 
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/gltf_scene.h"
-#include "sequences/import/obj_scene.h"
-#include "sequences/import/ply_scene.h"
 #include "sequences/import/scene_stream.h"
-#include "sequences/import/stl_scene.h"
+#include "sequences/import/surfaces/obj_scene.h"
+#include "sequences/import/surfaces/ply_scene.h"
+#include "sequences/import/surfaces/stl_scene.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/obj_materials.h"
+#include "sequences/import/surfaces/obj_materials.h"
 
 #include <algorithm>
 #include <array>
@@ -13,11 +13,11 @@
 
 #include <glm/mat3x3.hpp>
 
-#include "sequences/import/bare_surface.h"
 #include "sequences/import/limits.h"
 #include "sequences/import/lower_case.h"
-#include "sequences/import/obj_text.h"
 #include "sequences/import/pbr_surface.h"
+#include "sequences/import/surfaces/bare_surface.h"
+#include "sequences/import/surfaces/obj_text.h"
 #include "sequences/import/wide_text.h"
 #include "sequences/pictures/srgb.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/ply_scene.h"
+#include "sequences/import/surfaces/ply_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -7,10 +7,10 @@
 #include <optional>
 
 #include "sequences/files/quoted.h"
-#include "sequences/import/bare_surface.h"
 #include "sequences/import/ear_clipping.h"
 #include "sequences/import/lower_case.h"
-#include "sequences/import/ply_file.h"
+#include "sequences/import/surfaces/bare_surface.h"
+#include "sequences/import/surfaces/ply_file.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/obj_libraries.h"
+#include "sequences/import/surfaces/obj_libraries.h"
 
 #include <algorithm>
 #include <filesystem>

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "sequences/import/obj_materials.h"
+#include "sequences/import/surfaces/obj_materials.h"
 #include "sequences/import/texture_search.h"
 
 namespace talisman::sequences {

@@ -17,7 +17,7 @@
 #include <tiny_obj_loader.h>
 
 #include "layers/scene.h"
-#include "sequences/import/obj_materials.h"
+#include "sequences/import/surfaces/obj_materials.h"
 
 namespace talisman::sequences {
 

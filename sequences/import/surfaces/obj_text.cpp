@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/obj_text.h"
+#include "sequences/import/surfaces/obj_text.h"
 
 #include <algorithm>
 #include <utility>

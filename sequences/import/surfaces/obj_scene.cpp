@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/obj_scene.h"
+#include "sequences/import/surfaces/obj_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -9,13 +9,13 @@
 
 #include <glm/geometric.hpp>
 
-#include "sequences/import/bare_surface.h"
 #include "sequences/import/ear_clipping.h"
 #include "sequences/import/lower_case.h"
-#include "sequences/import/obj_faults.h"
-#include "sequences/import/obj_libraries.h"
-#include "sequences/import/obj_meshes.h"
-#include "sequences/import/obj_text.h"
+#include "sequences/import/surfaces/bare_surface.h"
+#include "sequences/import/surfaces/obj_faults.h"
+#include "sequences/import/surfaces/obj_libraries.h"
+#include "sequences/import/surfaces/obj_meshes.h"
+#include "sequences/import/surfaces/obj_text.h"
 #include "sequences/import/wide_text.h"
 
 namespace talisman::sequences {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/stl_scene.h"
+#include "sequences/import/surfaces/stl_scene.h"
 
 #include <algorithm>
 #include <array>
@@ -11,8 +11,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "sequences/import/bare_surface.h"
 #include "sequences/import/lower_case.h"
+#include "sequences/import/surfaces/bare_surface.h"
 #include "sequences/import/wide_text.h"
 #include "sequences/pictures/srgb.h"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/obj_meshes.h"
+#include "sequences/import/surfaces/obj_meshes.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
 
-#include "sequences/import/bare_surface.h"
+#include "sequences/import/surfaces/bare_surface.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {

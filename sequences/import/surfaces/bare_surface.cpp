@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/bare_surface.h"
+#include "sequences/import/surfaces/bare_surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/ply_file.h"
+#include "sequences/import/surfaces/ply_file.h"
 
 #include <algorithm>
 #include <array>
@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "sequences/files/errors.h"
-#include "sequences/import/obj_text.h"
+#include "sequences/import/surfaces/obj_text.h"
 #include "sequences/import/wide_text.h"
 
 namespace talisman::sequences {
