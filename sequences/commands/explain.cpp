@@ -16,6 +16,7 @@
 #include "sequences/results/explained_frame.h"
 #include "sequences/results/explanation.h"
 #include "sequences/results/flip_threshold.h"
+#include "sequences/results/layer_words.h"
 #include "sequences/results/settings_json.h"
 
 namespace talisman::sequences {
@@ -49,11 +50,6 @@ std::string hint_of(const LayerHistory& layer) {
   return "  (the merged sprite: --layer '" + into + "')\n";
 }
 
-std::string file_of(int frame, std::string layer) {
-  std::replace(layer.begin(), layer.end(), '/', '-');
-  return formatted("%04d-", frame) + layer + ".png";
-}
-
 layers::dvec2 worst_place(const LayerHistory& layer) {
   const Json::json_pointer place("/fiducials/worst_at_px");
   if (!layer.line.contains(place) || layer.line.at(place).is_null()) return {0, 0};
@@ -63,7 +59,7 @@ layers::dvec2 worst_place(const LayerHistory& layer) {
 std::string write_sheet(const std::string& folder, const LayerHistory& layer, const LayerPictures& pictures) {
   prepare_folder(folder);
   const int frame = layer.line.at("frame").get<int>();
-  std::string file = folder + "/" + file_of(frame, layer.layer);
+  std::string file = folder + "/" + picture_of(frame, layer.layer);
   const std::vector<std::string> title = {
       layer.layer + ", frame " + std::to_string(frame) + ": " + layer.line.at("decision").get<std::string>(),
       layer.line.at("reason").get<std::string>(), "the cross is where the geometric error is largest"};

@@ -83,8 +83,8 @@ void add_budget(CLI::App& command, CommandLine& line) {
       .option("--budget-pixels", line.budget_pixels, "sprite texels per frame, likewise", "no limit")
       .option("--budget-chunks", line.budget_chunks, "32x32 chunks of sprites per frame, likewise",
               "no limit")
-      .option("--budget-ms", line.budget_ms, "modelled render time per frame on talisman-1996, likewise",
-              "no limit")
+      .option("--budget-ms", line.budget_ms,
+              "modelled render time per frame on talisman-1996, as planned, likewise", "no limit")
       .option("--min-resolution", line.min_resolution,
               "least resolution of sprites that must fit, (0, 1]; 1: never lowered",
               shown(usual.min_resolution))

@@ -11,6 +11,7 @@
 #include "sequences/pictures/picture_sheet.h"
 #include "sequences/pictures/quality.h"
 #include "sequences/results/layer_alone.h"
+#include "sequences/results/layer_words.h"
 
 namespace talisman::sequences {
 
@@ -42,11 +43,6 @@ double psnr_of_layer(const chunker::Frame& shown, const chunker::Frame& fresh, c
     }
   if (squares == 0) return HUGE_VAL;
   return 10 * std::log10(255.0 * 255.0 * 3.0 * static_cast<double>(covered) / squares);
-}
-
-std::string sheet_name(std::string layer) {
-  std::replace(layer.begin(), layer.end(), '/', '-');
-  return layer + ".png";
 }
 
 std::string audit_line(const char* pattern, auto... values) {
@@ -135,7 +131,7 @@ std::vector<LayerAudit> Auditor::finish() {
   for (Kept& kept : layers_) {
     if (kept.fresh.width > 0) {
       prepare_folder(folder_);
-      kept.audit.sheet = sheet_name(kept.audit.layer);
+      kept.audit.sheet = picture_of(kept.audit.layer);
       write_png(folder_ + "/" + kept.audit.sheet, sheet_of_worst(kept.audit, kept.shown, kept.fresh));
     }
     audits.push_back(kept.audit);
@@ -147,15 +143,15 @@ std::string table_of(const std::vector<LayerAudit>& audit) {
   std::string rows = audit_line("  %-24s %7s %7s %6s %9s %9s %8s %8s %7s  %s\n", "audit of reuses", "audited",
                                 "beyond", "worst", "said px", "seen px", "said", "RMS", "FLIP", "");
   for (const LayerAudit& a : audit) {
-    const std::string name = a.layer.size() <= 24 ? a.layer : a.layer.substr(0, 21) + "...";
+    const std::string name = column_of(a.layer);
     if (a.audited == 0) {
-      rows += audit_line("  %-24s %7d\n", name.c_str(), 0);
+      rows += audit_line("  %s %7d\n", name.c_str(), 0);
       continue;
     }
     const std::string verdict = a.marked()     ? "MARKED: " + a.worst.should_have_spoken()
                                 : a.beyond > 0 ? a.worst.should_have_spoken()
                                                : "";
-    rows += audit_line("  %-24s %7d %7d %6d %9.3f %9.3f %8.3f %8.3f %7.4f  %s\n", name.c_str(), a.audited,
+    rows += audit_line("  %s %7d %7d %6d %9.3f %9.3f %8.3f %8.3f %7.4f  %s\n", name.c_str(), a.audited,
                        a.beyond, a.worst.frame, a.worst.geometric_px, a.worst.shift_px, a.worst.photometric,
                        a.worst.rms, a.worst.flip, verdict.c_str());
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "sequences/files/number_text.h"
+#include "sequences/results/layer_words.h"
 
 namespace talisman::sequences {
 
@@ -142,10 +143,10 @@ std::string explanation_of(const LayerHistory& layer, const Json& settings) {
 std::string overview_of(const std::vector<LayerHistory>& layers) {
   std::string text = formatted("  %-24s %-9s %7s %7s  %s\n", "layer", "decision", "before", "next", "why");
   for (const LayerHistory& layer : layers) {
-    const std::string name = layer.layer.size() <= 24 ? layer.layer : layer.layer.substr(0, 21) + "...";
+    const std::string name = column_of(layer.layer);
     const auto number = [](const std::optional<int>& frame) { return frame ? std::to_string(*frame) : "-"; };
     text +=
-        formatted("  %-24s %-9s %7s %7s  %s\n", name.c_str(),
+        formatted("  %s %-9s %7s %7s  %s\n", name.c_str(),
                   layer.line.at("decision").get<std::string>().c_str(), number(layer.drawn_before).c_str(),
                   number(layer.drawn_after).c_str(), layer.line.at("reason").get<std::string>().c_str());
   }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/separate_pictures.h"
 
-#include <algorithm>
-#include <cstdio>
 
 #include "sequences/files/image_io.h"
+#include "sequences/results/layer_words.h"
 
 namespace talisman::sequences {
 
@@ -33,13 +32,6 @@ layers::vec3 behind(const Pipeline& pipeline, LayerKind kind) {
   }
 }
 
-std::string file_name(int frame, std::string layer) {
-  std::replace(layer.begin(), layer.end(), '/', '-');
-  char number[16];
-  std::snprintf(number, sizeof number, "%04d", frame);
-  return std::string(number) + "-" + layer + ".png";
-}
-
 void write(const Pipeline& pipeline, const std::vector<chunker::PlacedSprite>& sprites,
            const layers::vec3& background, const std::string& path) {
   const auto result = chunker::composite(sprites, pipeline.settings.view.display_px, background);
@@ -64,10 +56,10 @@ void write_separate(const Pipeline& pipeline, const PipelineState& state, const 
     for (std::size_t k = first; k < i; ++k) {
       const layers::Layer& layer = all[report.shown[k].layer];
       write(pipeline, {sum[k - first]}, behind(pipeline, layer.kind),
-            folder + "/" + file_name(report.frame, layer.name));
+            folder + "/" + picture_of(report.frame, layer.name));
     }
     write(pipeline, sum, pipeline.scene.background,
-          folder + "/" + file_name(report.frame, all[base].name + "-sum"));
+          folder + "/" + picture_of(report.frame, all[base].name + "-sum"));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "sequences/files/number_text.h"
 #include "sequences/files/quoted.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/layer_words.h"
 
 namespace talisman::sequences {
 
@@ -26,15 +27,15 @@ std::string layer_rows(const Summary& s) {
   std::string text = formatted("  %-24s %9s %8s %8s %7s %9s %9s %11s  %s\n", "layer", "polygons", "renders",
                                "rate", "cost", "mean px", "max px", "sprite px", "why drawn");
   for (const LayerSummary* row : s.rows()) {
-    const std::string name = row->name.size() <= 24 ? row->name : row->name.substr(0, 21) + "...";
+    const std::string name = column_of(row->name);
     const std::string cost = formatted("%.1f%%", 100 * s.share_of_cost(*row));
     if (row->is_mirror) {
-      text += formatted("  %-24s %9s %8d %8s %7s\n", name.c_str(), "", row->renders, "", cost.c_str());
+      text += formatted("  %s %9s %8d %8s %7s\n", name.c_str(), "", row->renders, "", cost.c_str());
       continue;
     }
     const std::string sprite = formatted("%dx%d", row->sprite_px.x, row->sprite_px.y);
     const std::string why = row->reasons.text();
-    text += formatted("  %-24s %9d %8d %7.1f%% %7s %9.3f %9.3f %11s%s%s\n", name.c_str(), row->polygons,
+    text += formatted("  %s %9d %8d %7.1f%% %7s %9.3f %9.3f %11s%s%s\n", name.c_str(), row->polygons,
                       row->renders, 100 * row->update_rate(frames), cost.c_str(), row->mean_geometric_px(),
                       row->max_geometric_px, sprite.c_str(), why.empty() ? "" : "  ", why.c_str());
   }
