@@ -2,9 +2,11 @@
 #include "sequences/commands/cache_options.h"
 
 #include <cstdio>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
+#include "sequences/commands/option_group.h"
 #include "sequences/files/cache.h"
 #include "sequences/files/errors.h"
 
@@ -26,12 +28,13 @@ void open_cache(const CLI::App& command, const CacheWords& words) {
 }  // namespace
 
 void add_cache_options(CLI::App& command, CacheWords& words) {
-  command.add_option("--cache", words.folder,
-                     "folder of models that were read and ground that was painted before "
-                     "($XDG_CACHE_HOME/talisman, else ~/.cache/talisman)");
-  command.add_option("--cache-mb", words.megabytes,
-                     "size of the cache in megabytes; what was used least recently is dropped");
-  command.add_flag("--no-cache", words.none, "read and paint all anew, and keep nothing");
+  OptionGroup(command, "Cache")
+      .option("--cache", words.folder, "folder of models that were read and ground that was painted before",
+              "$XDG_CACHE_HOME/talisman, else ~/.cache/talisman")
+      .option("--cache-mb", words.megabytes,
+              "size of the cache in megabytes; what was used least recently is dropped",
+              std::to_string(words.megabytes))
+      .flag("--no-cache", words.none, "read and paint all anew, and keep nothing");
   command.parse_complete_callback([&command, &words] { open_cache(command, words); });
 }
 

@@ -23,8 +23,9 @@ std::string common_beginning(const std::vector<int>& parts, const std::vector<st
   return common;
 }
 
-/// The beginning is not cut in the middle of a word.
+/// The beginning is not cut in the middle of a word, nor before the "/" that ends a node's name.
 bool is_cut(const std::string& text, std::size_t at) {
+  if (at < text.size() && text[at] == '/') return false;
   return at == text.size() || !std::isalnum(static_cast<unsigned char>(text[at - 1])) ||
          !std::isalnum(static_cast<unsigned char>(text[at]));
 }

@@ -99,6 +99,7 @@ void add_camera_of_model(DocumentedKeys& out, const Source& source) {
   std::vector<std::string> others;
   for (std::size_t k = 1; k < cameras.size(); ++k) others.push_back(cameras[k].name);
   if (!others.empty()) out.page().comment("  ", "Others in the file: " + quoted(others));
+  out.page().comment("  ", "Instead of model, a camera of the sequence's own:");
   for (const char* key : {"fov_deg", "near_m", "far_m", "orbit", "position", "look_at", "flight"})
     out.off("  ", keys, key);
   out.off("", top(), "turntable");
@@ -114,7 +115,7 @@ void add_orbit(DocumentedKeys& out, const Orbit& orbit) {
   out.put("    ", orbit_keys, "center", yaml_vector(orbit.center));
   out.put("    ", orbit_keys, "distance_m", yaml_number(orbit.distance_m));
   out.put("    ", orbit_keys, "elevation_deg", degrees_text(orbit.elevation_rad));
-  out.page().comment("  ", "Instead of orbit, with another place over time or one and the same:");
+  out.page().comment("  ", "Instead of orbit, a camera that stands, flies or is a model's:");
   const dvec3 from = orbit.center + orbit.distance_m * dvec3(0, std::sin(orbit.elevation_rad),
                                                              std::cos(orbit.elevation_rad));
   out.off("  ", keys, "position", written(from));

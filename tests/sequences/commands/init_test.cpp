@@ -17,7 +17,7 @@ class Init : public Tool {
   /// Renders both and expects the same frames and the same decisions.
   void expect_same_pictures(const std::string& model, const std::string& options = "",
                             const std::string& frames = "0-5") const {
-    const Outcome made = run_shell("'" + tool() + "' init '" + model + "' " + options + " > s.yaml");
+    const Outcome made = run_shell("( '" + tool() + "' init '" + model + "' " + options + " > s.yaml )");
     ASSERT_EQ(made.exit_code, 0) << made.output;
     const std::string how = " --size 96x64 --progress none --strict --frames " + frames;
     const Outcome bare = run("render '" + model + "' --out bare " + options + how),

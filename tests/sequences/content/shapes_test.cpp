@@ -115,6 +115,22 @@ std::string shape_error(const std::string& shapes) {
   return message_of([&] { load(shapes); });
 }
 
+TEST(ShapeMesh, DiscIsFlatFacesUpAndHasTheAreaOfItsPolygon) {
+  const layers::Mesh mesh = shape_mesh(shape(Kind::Disc, {4, 1, 4}, 6));
+  EXPECT_EQ(mesh.triangle_count(), 4);
+  for (const layers::vec3& n : mesh.normals) EXPECT_EQ(n, layers::vec3(0, 1, 0));
+  double area = 0;
+  for (std::size_t i = 0; i < mesh.indices.size(); i += 3) {
+    const dvec3 a(mesh.positions[mesh.indices[i]]), b(mesh.positions[mesh.indices[i + 1]]),
+        c(mesh.positions[mesh.indices[i + 2]]);
+    const dvec3 across = glm::cross(b - a, c - a);
+    EXPECT_GT(across.y, 0);
+    area += 0.5 * glm::length(across);
+  }
+  EXPECT_NEAR(area, 6 * std::sqrt(3), 1e-5);          // a hexagon of radius 2: 3/2 · √3 · 2²
+  EXPECT_EQ(mesh.uvs.front(), layers::vec2(0.5, 1));  // at +z: below in the texture, as on a plane
+}
+
 TEST(LoadSequence, ShapesBecomePartsOfTheirNames) {
   const Sequence s = load(
       "  - {id: a, box: [1, 2, 3], color: [0.1, 0.2, 0.3], opacity: 0.5, two_sided: true}\n"
@@ -145,7 +161,7 @@ TEST(LoadSequence, CarriedShapesMoveWithTheirCarrier) {
 
 TEST(LoadSequence, WrongShapesAreRefusedWithTheirLine) {
   EXPECT_THAT(shape_error("  - {id: a}\n"), HasSubstr("test.yaml:4: shapes[0]"));
-  EXPECT_THAT(shape_error("  - {id: a}\n"), HasSubstr("box, sphere, cylinder and plane"));
+  EXPECT_THAT(shape_error("  - {id: a}\n"), HasSubstr("box, sphere, cylinder, plane and disc"));
   EXPECT_THAT(shape_error("  - {id: a, box: [1, 1, 1], sphere: 2}\n"), HasSubstr("not two"));
   EXPECT_THAT(shape_error("  - {id: a, box: [1, 0, 1]}\n"), HasSubstr("every side above 0"));
   EXPECT_THAT(shape_error("  - {id: a, sphere: -1}\n"), HasSubstr("shapes[0].sphere"));
