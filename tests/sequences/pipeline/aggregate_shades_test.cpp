@@ -328,5 +328,52 @@ TEST(AggregateLight, WithoutColourWarpTheLightIsTheReasonToDrawAgain) {
   EXPECT_EQ(named, renders - 1) << "all but the first appearance";
 }
 
+/// Two white boxes that stand in each other, so that they are always merged, under ambient light of a half. The
+/// first one's first texture is weighted by `first_keys`.
+std::vector<FrameReport> fading_in_a_merged_sprite(double photometric, const std::string& first_keys) {
+  const TemporaryFolder folder;
+  folder.write("white.ppm", "P3 1 1 255\n255 255 255\n");
+  const std::string text =
+      "frames: 10\nfps: 10\ndisplay: [64, 48]\nshapes:\n"
+      "  - {id: a, box: [4, 1, 1], color: [1, 1, 1], texture: white.ppm, texture2: white.ppm, texture_blend: "
+      "[1, 0]}\n"
+      "  - {id: b, box: [1, 4, 1], color: [1, 1, 1]}\n"
+      "camera: {fov_deg: 60, near_m: 1, far_m: 100, position: [0, 0, 10], look_at: [0, 0, 0]}\n"
+      "lights: [{kind: ambient, color: [0.5, 0.5, 0.5]}]\n"
+      "layers:\n  - {name: a, parts: [a], shading: {textures: {}, first_blend: " +
+      first_keys + "}}\n  - {name: b, parts: [b]}\n";
+  const Sequence sequence = load_sequence(folder.write("fading.yaml", text));
+  Settings settings = shaded_settings(sequence, Policy::Threshold);
+  settings.regulator.thresholds.photometric = photometric;
+  return Playback(sequence, settings).all(10);
+}
+
+TEST(AggregateShades, TexturesThatFadeInsideAMergedSpriteAreFollowed) {
+  const std::string fading = "[{t: 0, value: 1}, {t: 1, value: 0.5}]",
+                    steady = "[{t: 0, value: 1}, {t: 1, value: 1}]";
+  const auto reports = fading_in_a_merged_sprite(0.1, fading);
+  int renders = 0, checked = 0, depicted = 0;
+  for (const FrameReport& report : reports) {
+    ASSERT_TRUE(is_merged(report)) << report.frame;
+    const std::size_t both = report.layers.size() - 1;
+    ASSERT_EQ(report.layers[both].name, "a+b");
+    const bool drawn = report.plan.decisions[both].action == Action::Rerender;
+    if (report.frame > 0) {
+      // The factor has fallen by 0.05 a frame since the sprite was drawn; the colour of white under a half is 0.5 √3.
+      const double change = 0.05 * (report.frame - depicted);
+      EXPECT_NEAR(report.assessments[both].fiducials.photometric.color, change * 0.5 * std::sqrt(3.0), 1e-9);
+      ++checked;
+    }
+    renders += drawn;
+    if (drawn) depicted = report.frame;
+  }
+  EXPECT_EQ(checked, 9);
+  EXPECT_EQ(renders, 4);  // 0.0433 a frame: beyond 0.1 in every third
+  renders = 0;
+  for (const FrameReport& report : fading_in_a_merged_sprite(0.1, steady))
+    renders += report.plan.decisions[report.layers.size() - 1].action == Action::Rerender;
+  EXPECT_EQ(renders, 1);
+}
+
 }  // namespace
 }  // namespace talisman::sequences
