@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fiducials/lit_places.h"
 
+#include <algorithm>
 #include <cmath>
 #include <span>
 
@@ -153,6 +154,26 @@ std::vector<LitPair> lit_pairs(const LayerState& then, const LayerState& now, co
   pairs.add_material_points();
   pairs.add_light_places();
   return pairs.take();
+}
+
+int light_that_changed(const LayerState& then, const LayerState& now, const layers::MeanSurface& surface,
+                       const SurfacePoint& then_at, const SurfacePoint& now_at, const dvec3& multiplier) {
+  int worst = LightRef::kNone;
+  double most = 0;
+  for (std::size_t l = 0; l < std::min(then.lights.size(), now.lights.size()); ++l) {
+    const dvec3 before = share_of_light(surface, then.lights[l], then_at);
+    const dvec3 after = share_of_light(surface, now.lights[l], now_at);
+    const double change = glm::length(after - multiplier * before);
+    if (change > most) most = change, worst = static_cast<int>(l);
+  }
+  return worst;
+}
+
+dvec2 place_on_display(const LayerState& state, const dvec3& position) {
+  const layers::dvec4 clip =
+      layers::clip_from_world(state.camera, state.view.display_px) * layers::dvec4(position, 1);
+  if (clip.w > state.camera.near_m) return layers::screen_from_clip(clip, state.view.display_px);
+  return (state.screen_bounds_px.lo + state.screen_bounds_px.hi) / 2.0;
 }
 
 }  // namespace talisman::fiducials

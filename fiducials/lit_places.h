@@ -22,4 +22,12 @@ struct LitPair {
 std::vector<LitPair> lit_pairs(const layers::LayerState& then, const layers::LayerState& now,
                                const layers::LayerBound& bound);
 
+/// The light whose share at the place a multiplier of the old colours follows worst: an index, or LightRef::kNone.
+int light_that_changed(const layers::LayerState& then, const layers::LayerState& now,
+                       const layers::MeanSurface& surface, const layers::SurfacePoint& then_at,
+                       const layers::SurfacePoint& now_at, const dvec3& multiplier);
+
+/// Where a point of the world is on the display; what is not before the eye: the middle of the layer.
+dvec2 place_on_display(const layers::LayerState& state, const dvec3& position);
+
 }  // namespace talisman::fiducials

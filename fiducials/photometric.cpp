@@ -90,27 +90,6 @@ LitPair pair_at(const LayerState& then, const LayerState& now, int point) {
   return {at(then), at(now)};
 }
 
-/// The light whose share at the place the multiplier follows worst.
-int light_that_changed(const LayerState& then, const LayerState& now, const LayerBound& bound,
-                       const LitPair& place, const dvec3& multiplier) {
-  int worst = LightRef::kNone;
-  double most = 0;
-  for (std::size_t l = 0; l < std::min(then.lights.size(), now.lights.size()); ++l) {
-    const dvec3 before = share_of_light(*bound.surface, then.lights[l], place.then);
-    const dvec3 after = share_of_light(*bound.surface, now.lights[l], place.now);
-    const double change = glm::length(after - multiplier * before);
-    if (change > most) most = change, worst = static_cast<int>(l);
-  }
-  return worst;
-}
-
-dvec2 place_of(const LayerState& state, const dvec3& position) {
-  const layers::dvec4 clip =
-      layers::clip_from_world(state.camera, state.view.display_px) * layers::dvec4(position, 1);
-  if (clip.w > state.camera.near_m) return layers::screen_from_clip(clip, state.view.display_px);
-  return (state.screen_bounds_px.lo + state.screen_bounds_px.hi) / 2.0;
-}
-
 void sample_points(const LayerState& then, const LayerState& now, const LayerBound& bound,
                    const PhotometricOptions& options, Photometric& result) {
   const std::vector<LitPair> pairs = lit_pairs(then, now, bound);
@@ -122,8 +101,9 @@ void sample_points(const LayerState& then, const LayerState& now, const LayerBou
   result.point = seen.point[fitted.worst_point];
   const int beyond = result.point - static_cast<int>(now.point_colors.size());
   const LitPair worst = beyond >= 0 ? pairs[beyond] : pair_at(then, now, result.point);
-  result.where_px = place_of(now, worst.now.position);
-  result.color_light.index = light_that_changed(then, now, bound, worst, fitted.multiplier);
+  result.where_px = place_on_display(now, worst.now.position);
+  result.color_light.index =
+      light_that_changed(then, now, *bound.surface, worst.then, worst.now, fitted.multiplier);
 }
 
 // ---- light source ----

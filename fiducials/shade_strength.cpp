@@ -121,24 +121,6 @@ double error_at(const PointPair& point, std::span<const int> lights, const Layer
   return glm::length(glm::min(whole, dvec3(1.0)) * glm::min(change, dvec3(1.0)));
 }
 
-int light_that_changed(const LayerState& then, const LayerState& now, const MeanSurface& surface,
-                       const PointPair& point) {
-  int worst = LightRef::kNone;
-  double most = 0;
-  for (std::size_t l = 0; l < std::min(then.lights.size(), now.lights.size()); ++l) {
-    const double change = glm::distance(share_of_light(surface, then.lights[l], point.then),
-                                        share_of_light(surface, now.lights[l], point.now));
-    if (change > most) most = change, worst = static_cast<int>(l);
-  }
-  return worst;
-}
-
-dvec2 place_of(const LayerState& state, const dvec3& position) {
-  const dvec4 clip = layers::clip_from_world(state.camera, state.view.display_px) * dvec4(position, 1);
-  if (clip.w > state.camera.near_m) return layers::screen_from_clip(clip, state.view.display_px);
-  return (state.screen_bounds_px.lo + state.screen_bounds_px.hi) / 2.0;
-}
-
 }  // namespace
 
 Photometric shade_strength_of(const LayerState& then, const LayerState& now, const LayerBound& bound,
@@ -156,8 +138,8 @@ Photometric shade_strength_of(const LayerState& then, const LayerState& now, con
     const double error = error_at(point, lights, then, now, *bound.surface, per_channel);
     if (!(error > result.color)) continue;
     result.color = error;
-    result.where_px = place_of(now, point.now.position);
-    result.color_light.index = light_that_changed(then, now, *bound.surface, point);
+    result.where_px = place_on_display(now, point.now.position);
+    result.color_light.index = light_that_changed(then, now, *bound.surface, point.then, point.now, dvec3(1));
   }
   return result;
 }
