@@ -267,10 +267,10 @@ class ShadowMapBuilder {
     const dvec3 towards = (lo_ + hi_) * 0.5 - light_.position;
     const double distance = glm::length(towards);
     if (distance > near_w()) {
-      const LightAxes axes = axes_along(towards / distance);
-      const double tan_half = widest_tan(axes);
-      if (tan_half <= kWidestTan) {
-        add(perspective_view(options_, light_.position, axes, tan_half, near_w()));
+      const double fitted = widest_tan(axes_along(towards / distance));
+      if (fitted <= kWidestTan) {
+        const LightAxes axes = axes_along(steady_direction(towards / distance, fitted));
+        add(perspective_view(options_, light_.position, axes, stepped(widest_tan(axes)), near_w()));
         return;
       }
     }

@@ -28,8 +28,14 @@ SpriteView view_of(const layers::ShadowMapOptions& options, double near_w) {
   return view;
 }
 
-/// The least step that is no smaller. Sizes that authors write, and powers of two, are kept off the border
-/// between two steps, where the rounding of a moving caster's bounds would decide.
+}  // namespace
+
+dvec3 LightAxes::operator()(const dvec3& p) const {
+  return {glm::dot(right, p), glm::dot(down, p), glm::dot(forward, p)};
+}
+
+/// Sizes that authors write, and powers of two, are kept off the border between two steps, where the rounding of a
+/// moving caster's bounds would decide.
 double stepped(double size) {
   constexpr double kOffRoundNumbers = 1.0137;
   int exponent = 0;
@@ -37,10 +43,9 @@ double stepped(double size) {
   return std::ldexp(std::ceil(mantissa * 16), exponent - 4);
 }
 
-}  // namespace
-
-dvec3 LightAxes::operator()(const dvec3& p) const {
-  return {glm::dot(right, p), glm::dot(down, p), glm::dot(forward, p)};
+dvec3 steady_direction(const dvec3& forward, double tan_half) {
+  const double step = stepped(std::max(tan_half, kNarrowestTan)) / 8;
+  return glm::normalize(glm::round(forward / step) * step);
 }
 
 LightAxes axes_along(const dvec3& forward) {

@@ -41,6 +41,11 @@ std::string share_of_shade(const fiducials::Report& report) {
   return std::string(" (") + numbers + "of " + what + ")";
 }
 
+/// Displacement of a layer counts by its weight: twice as important is half as far off. Weight 0: no limit.
+double geometric_limit_px(const LayerAssessment& layer, const Thresholds& limits) {
+  return limits.geometric_px / layer.preferences.importance.geometric;
+}
+
 /// The first fiducial beyond its threshold, in words and numbers, or an empty string.
 /// The order is that of [LS97 5]: geometry first, because it is the one that users set.
 std::string first_violation(const LayerAssessment& layer, const Thresholds& limits) {
@@ -48,8 +53,8 @@ std::string first_violation(const LayerAssessment& layer, const Thresholds& limi
   if (!layer.fitted.usable()) return "fit: " + std::string(warp::name(layer.fitted.status));
   if (layer.matched_points < kFewestMatchedPoints)
     return comparison("matched points", layer.matched_points, "<", kFewestMatchedPoints);
-  if (!(f.geometric.px <= limits.geometric_px))
-    return comparison("geometric", f.geometric.px, ">", limits.geometric_px, "px") + share_of_shade(f);
+  if (const double most_px = geometric_limit_px(layer, limits); !(f.geometric.px <= most_px))
+    return comparison("geometric", f.geometric.px, ">", most_px, "px") + share_of_shade(f);
   if (std::string light = photometric_violation(f.photometric, limits); !light.empty()) return light;
   if (limits.magnification > 0 && !(f.sampling.magnification <= limits.magnification))
     return comparison("sampling: magnification", f.sampling.magnification, ">", limits.magnification);
@@ -101,7 +106,7 @@ LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOpti
   if (settled) violation = settle_reason(layer);
   if (violation.empty())
     return reuse(layer, comparison("geometric", layer.fiducials.geometric.px,
-                                   "<=", options.thresholds.geometric_px, "px"));
+                                   "<=", geometric_limit_px(layer, options.thresholds), "px"));
   if (has_sound_fit(layer) && barred_by_maximum_rate(layer))
     return reuse(layer, "deferred: max_update_rate; " + violation);
   LayerDecision decision = rerender(layer, std::move(violation));

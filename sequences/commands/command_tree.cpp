@@ -35,6 +35,8 @@ constexpr std::array kExamples{
              "talisman audit carousel --policy interpolate --hold 4 --every 1"},
     Examples{"explain", "talisman explain carousel --frame 17",
              "talisman explain out/carousel --frame 17 --layer 'horse 1'"},
+    Examples{"tune", "talisman tune carousel --flip 0.02 --frames 0-23 --size 160x120",
+             "talisman tune carousel --budget-ms 8"},
     Examples{"inspect", "talisman inspect carousel --order", "talisman inspect model.glb --parts"},
     Examples{"init", "talisman init model.glb > my.yaml", "talisman init model.glb --turntable 10 > my.yaml"},
     Examples{"diff", "talisman diff out/a/frames out/b/frames", "talisman diff a.png b.png --map out/map"},
@@ -63,13 +65,15 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   app_.set_version_flag("--version", version_text, "version, commit, effects built, instruction set");
   add_runs(stop);
   add_explain();
+  add_tune(stop);
   add_inspect();
   add_init();
   add_diff();
   add_exports();
   add_warps();
   add_accuracy();
-  for (const char* command : {"render", "plan", "audit", "explain", "inspect", "init", "warps", "accuracy"})
+  for (const char* command :
+       {"render", "plan", "audit", "explain", "tune", "inspect", "init", "warps", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
   add_examples(app_);
 }
@@ -107,6 +111,13 @@ void CommandTree::add_explain() {
         explain_.others.push_back(option->get_name());
     exit_code_ = run_explain(explain_, std::cout);
   });
+}
+
+void CommandTree::add_tune(const std::atomic<bool>& stop) {
+  CLI::App* command = app_.add_subcommand(
+      "tune", "the cheapest thresholds that hold a quality, or the finest ones within a time");
+  add_tune_options(*command, tune_);
+  command->callback([this, &stop] { exit_code_ = run_tune(tune_, stop, std::cout); });
 }
 
 void CommandTree::add_inspect() {

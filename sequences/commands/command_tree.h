@@ -15,6 +15,7 @@
 #include "sequences/commands/init.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
+#include "sequences/commands/tune.h"
 #include "sequences/commands/warps.h"
 #include "sequences/files/errors.h"
 
@@ -35,6 +36,7 @@ class CommandTree {
  private:
   void add_runs(const std::atomic<bool>& stop);
   void add_explain();
+  void add_tune(const std::atomic<bool>& stop);
   void add_inspect();
   void add_init();
   void add_diff();
@@ -45,6 +47,7 @@ class CommandTree {
   CLI::App app_;
   CommandLine line_;
   ExplainOptions explain_;
+  TuneOptions tune_;
   InspectOptions inspect_;
   InitOptions init_;
   DiffOptions diff_;

@@ -16,8 +16,10 @@ using layers::ShadingSpec;
 const Table<FiducialWeights>& importance_keys() {
   static const Table<FiducialWeights> table =
       Table<FiducialWeights>("importance")
-          .key("geometric", &FiducialWeights::geometric, number(kNotNegative), "",
-               "weight of the displacement")
+          .key(
+              "geometric", &FiducialWeights::geometric, number(kNotNegative), "",
+              "weight of the displacement; `geometric_px` is divided by it: 2 allows the layer half of it, 0 "
+              "any displacement")
           .key("photometric", &FiducialWeights::photometric, number(kNotNegative), "", "of the shading")
           .key("sampling", &FiducialWeights::sampling, number(kNotNegative), "",
                "of magnification, minification and anisotropy")

@@ -55,7 +55,7 @@ Table<BudgetOptions> budget_keys() {
       .key("budget_chunks", &B::chunks, amount(), "chunks", "policy budget: of each frame, 32 × 32 texels")
       .otherwise("no limit")
       .key("budget_ms", &B::ms, number(kNotNegative), "ms",
-           "policy budget: modelled render time of each frame")
+           "policy budget: modelled render time of each frame, as planned (`modelled_drawing_ms`)")
       .otherwise("no limit")
       .key("min_resolution", &B::min_resolution, number({0, 1, true}), "",
            "policy budget: how far sprites may be drawn coarser to fit; 1: never")

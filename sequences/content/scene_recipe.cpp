@@ -34,7 +34,8 @@ const Table<CameraRecipe>& camera_keys() {
       Table<C>("camera")
           .key("fov_deg", &C::fov_deg, number({1, 170}), "°", "vertical field of view")
           .key("near_m", &C::near_m, number(kPositive), "m", "what is nearer is not drawn")
-          .key("far_m", &C::far_m, number(kPositive), "m", "nor what is farther")
+          .key("far_m", &C::far_m, number(kPositive), "m",
+               "end of the depths; what is farther is drawn all the same")
           .rule("near_m below far_m", [](const C& camera) { return camera.near_m < camera.far_m; })
           .key("orbit", &C::orbit, map_of(orbit_keys()), "",
                "goes round a place, once in the seconds of `turntable`")

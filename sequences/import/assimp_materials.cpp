@@ -43,31 +43,39 @@ layers::Texture read_embedded(const aiTexture& from, const std::string& name) {
 layers::Texture read_reference(Import& import, const std::string& reference) {
   if (const aiTexture* embedded = import.from.GetEmbeddedTexture(reference.c_str()))
     return read_embedded(*embedded, reference);
-  const std::string file = find_texture(import.place, reference, import.files);
-  if (file.empty()) throw InputError("is missing");
-  import.files.look_for(file);
-  layers::Texture texture = read_texture(file);
-  texture.name = fs::path(file).filename().string();
-  return texture;
+  return read_named_texture(import.place, reference, import.files);
+}
+
+/// Where a picture ends in a direction; what is beside a decal is taken for its edge.
+layers::Wrap wrap_of(const aiMaterial& from, const char* key, aiTextureType type) {
+  int mode = aiTextureMapMode_Wrap;
+  from.Get(key, type, 0, mode);
+  if (mode == aiTextureMapMode_Mirror) return layers::Wrap::Mirror;
+  return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? layers::Wrap::Clamp
+                                                                          : layers::Wrap::Repeat;
 }
 
 /// Index of the material's colour texture; -1: none, or missing (a warning, once per reference).
 int material_texture(Import& import, const aiMaterial& from, bool opaque) {
+  const aiTextureType type = color_map_of(from);
   aiString written;
-  if (from.GetTexture(aiTextureType_BASE_COLOR, 0, &written) != aiReturn_SUCCESS &&
-      from.GetTexture(aiTextureType_DIFFUSE, 0, &written) != aiReturn_SUCCESS)
-    return -1;
+  if (type == aiTextureType_NONE || from.GetTexture(type, 0, &written) != aiReturn_SUCCESS) return -1;
   const std::string reference = written.C_Str();
   if (reference.empty()) return -1;
-  const auto [entry, is_new] = import.texture_of.emplace((opaque ? "opaque:" : "") + reference, -1);
+  const layers::Wrap u = wrap_of(from, _AI_MATKEY_MAPPINGMODE_U_BASE, type),
+                     v = wrap_of(from, _AI_MATKEY_MAPPINGMODE_V_BASE, type);
+  const std::string way =
+      std::to_string(static_cast<int>(u)) + std::to_string(static_cast<int>(v)) + (opaque ? "opaque:" : ":");
+  const auto [entry, is_new] = import.texture_of.emplace(way + reference, -1);
   if (!is_new) return entry->second;
   try {
     layers::Texture texture = read_reference(import, reference);
+    texture.wrap_u = u, texture.wrap_v = v;
     if (opaque) make_opaque(texture);
     import.model.scene.textures.push_back(std::move(texture));
     entry->second = static_cast<int>(import.model.scene.textures.size()) - 1;
   } catch (const InputError& e) {
-    import.warn("texture '" + reference + "': " + e.what() + "; a plain colour is used");
+    import.warn_once(missing_texture(reference, e.what()));
   }
   return entry->second;
 }
@@ -178,6 +186,12 @@ void turn_transparency_over(Import& import) {
 }
 
 }  // namespace
+
+aiTextureType color_map_of(const aiMaterial& material) {
+  for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
+    if (material.GetTextureCount(type) > 0) return type;
+  return aiTextureType_NONE;
+}
 
 void import_materials(Import& import) {
   for (unsigned i = 0; i < import.from.mNumMaterials; ++i) {

@@ -13,6 +13,7 @@
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/collada_cameras.h"
 #include "sequences/import/exposure.h"
+#include "sequences/import/far_plane.h"
 #include "sequences/import/limits.h"
 #include "sequences/import/lower_case.h"
 #include "sequences/import/studio_cameras.h"
@@ -272,6 +273,9 @@ void import_cameras(Import& import) {
         apply_collada(import, of_file, camera);
         break;
       }
+    if (camera.far_m != layers::Camera{}.far_m)
+      if (const std::string cut = beyond_far_plane(import.model.scene, camera); !cut.empty())
+        import.warn(cut);
     import.model.scene.cameras.push_back(camera);
   }
 }

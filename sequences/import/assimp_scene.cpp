@@ -7,12 +7,14 @@
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
+#include <assimp/version.h>
 #include <assimp/Importer.hpp>
 
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "sequences/import/file_frame.h"
 #include "sequences/import/limits.h"
+#include "sequences/import/lower_case.h"
 #include "sequences/import/recorded_files.h"
 #include "sequences/pictures/srgb.h"
 
@@ -118,16 +120,25 @@ layers::vec3 unit_or_up(const aiVector3D& v) {
   return length > 1e-12f && std::isfinite(length) ? n / length : layers::vec3(0, 1, 0);
 }
 
-layers::Mesh import_mesh(const aiMesh& from) {
+/// The set of coordinates by which the colour map of the mesh is looked up.
+unsigned coordinate_set(const aiScene& scene, const aiMesh& mesh) {
+  if (mesh.mMaterialIndex >= scene.mNumMaterials || !scene.mMaterials[mesh.mMaterialIndex]) return 0;
+  const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+  int set = 0;
+  material.Get(_AI_MATKEY_UVWSRC_BASE, color_map_of(material), 0, set);
+  return set > 0 && mesh.HasTextureCoords(static_cast<unsigned>(set)) ? static_cast<unsigned>(set) : 0;
+}
+
+layers::Mesh import_mesh(const aiScene& scene, const aiMesh& from) {
   layers::Mesh mesh;
   mesh.name = text(from.mName);
   const unsigned n = from.mVertices ? from.mNumVertices : 0;
   for (unsigned i = 0; i < n; ++i) mesh.positions.push_back(to_float3(from.mVertices[i]));
   if (from.HasNormals())
     for (unsigned i = 0; i < n; ++i) mesh.normals.push_back(unit_or_up(from.mNormals[i]));
-  if (from.HasTextureCoords(0))
+  if (const unsigned set = coordinate_set(scene, from); from.HasTextureCoords(set))
     for (unsigned i = 0; i < n; ++i)
-      mesh.uvs.push_back({from.mTextureCoords[0][i].x, from.mTextureCoords[0][i].y});
+      mesh.uvs.push_back({from.mTextureCoords[set][i].x, from.mTextureCoords[set][i].y});
   if (from.HasVertexColors(0))
     for (unsigned i = 0; i < n; ++i) {
       const aiColor4D& c = from.mColors[0][i];
@@ -208,7 +219,7 @@ void import_skin(Import& import, int mesh_index) {
 void import_meshes(Import& import) {
   for (unsigned i = 0; i < import.from.mNumMeshes; ++i) {
     const aiMesh* mesh = import.from.mMeshes[i];
-    import.model.scene.meshes.push_back(mesh ? import_mesh(*mesh) : layers::Mesh{});
+    import.model.scene.meshes.push_back(mesh ? import_mesh(import.from, *mesh) : layers::Mesh{});
     if (mesh && mesh->mNumBones > 0 && mesh->mBones) import_skin(import, static_cast<int>(i));
   }
 }
@@ -255,6 +266,14 @@ int import_frame(Import& import, const FileFrame& frame) {
   return 0;
 }
 
+/// Of formats that assimp lists and cannot read, whatever the file; empty of others.
+std::string weakness_of_reader(const std::string& path) {
+  const std::string extension = lower_extension(path);
+  if (extension != ".irr" && extension != ".irrmesh") return {};
+  return "; assimp " + std::to_string(aiGetVersionMajor()) + "." + std::to_string(aiGetVersionMinor()) +
+         " finds no mesh in files of Irrlicht";
+}
+
 const aiScene* read_file(Assimp::Importer& importer, const std::string& path,
                          std::vector<std::string>& losses) {
   const aiScene* from = importer.ReadFile(path, 0);
@@ -262,7 +281,8 @@ const aiScene* read_file(Assimp::Importer& importer, const std::string& path,
   if (from) from = importer.ApplyPostProcessing(kSteps);
   if (from && from->mRootNode) return from;
   const std::string why = importer.GetErrorString();
-  throw InputError("cannot be read as a model: " + (why.empty() ? "no reader takes it" : why));
+  throw InputError("cannot be read as a model: " + (why.empty() ? "no reader takes it" : why) +
+                   weakness_of_reader(path));
 }
 
 }  // namespace
@@ -284,21 +304,9 @@ ImportedModel read_with_assimp(const ModelPlace& place) {
   import_motion(import);
   import_lights(import);
   import_cameras(import);
-  if (import.model.scene.parts.empty()) throw InputError("has no triangles, rule: a model has at least one");
+  if (import.model.scene.parts.empty())
+    throw InputError("has no triangles, rule: a model has at least one" + weakness_of_reader(place.path));
   import.model.files = files.take();
-  return std::move(import.model);
-}
-
-ImportedModel with_assimp_materials(const ModelPlace& place, const std::string& content, FileUses& files,
-                                    const std::function<void(const aiScene&)>& look) {
-  Assimp::Importer importer;
-  importer.SetIOHandler(new ReplacedModel(place, files, content));
-  const aiScene* from = importer.ReadFile(place.path, 0);
-  if (!from || !from->mRootNode)
-    throw InputError(std::string("its materials cannot be read: ") + importer.GetErrorString());
-  Import import(*from, place, files);
-  import_materials(import);
-  look(*from);
   return std::move(import.model);
 }
 

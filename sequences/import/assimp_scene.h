@@ -5,7 +5,6 @@
 /// links assimp.
 
 #include <algorithm>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -19,11 +18,6 @@ namespace talisman::sequences {
 
 /// Reads the file. Throws InputError without the file's name, which the parent puts in front.
 ImportedModel read_with_assimp(const ModelPlace& place);
-
-/// The materials of a model whose file holds `content`, which assimp can read; `look` may look at the rest of what
-/// assimp made of it. Throws InputError likewise.
-ImportedModel with_assimp_materials(const ModelPlace& place, const std::string& content, FileUses& files,
-                                    const std::function<void(const aiScene&)>& look);
 
 /// What the steps of one import have in common.
 struct Import {
@@ -43,9 +37,11 @@ struct Import {
 };
 
 void import_materials(Import& import);  ///< import_materials.cpp
-void import_motion(Import& import);     ///< import_motion.cpp: tracks of the first animation
-void import_lights(Import& import);     ///< import_motion.cpp
-void import_cameras(Import& import);    ///< import_motion.cpp
+/// By which map a material is coloured: its first one is drawn.
+aiTextureType color_map_of(const aiMaterial& material);
+void import_motion(Import& import);   ///< import_motion.cpp: tracks of the first animation
+void import_lights(Import& import);   ///< import_motion.cpp
+void import_cameras(Import& import);  ///< import_motion.cpp
 
 inline layers::dvec3 to_vector(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 inline glm::dquat to_quaternion(const aiQuaternion& q) { return {q.w, q.x, q.y, q.z}; }

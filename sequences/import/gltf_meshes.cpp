@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "sequences/files/number_text.h"
 #include "sequences/import/gltf_compression.h"
 #include "sequences/import/gltf_scene.h"
 
@@ -196,6 +197,20 @@ const GltfMaterial& maps_of(const GltfImport& import, int material) {
   return material >= 0 ? import.materials[static_cast<std::size_t>(material)] : import.materials.back();
 }
 
+/// All attributes of a primitive have one count (glTF 2.0, 3.7.2.1), those that are not drawn, too.
+void check_counts(const GltfImport& import, const Json& attributes, const std::string& mesh) {
+  const auto count_of = [&](int accessor) {
+    return number_of(item_of(import.file, "accessors", accessor), "count", 0);
+  };
+  const double vertices = count_of(index_of(attributes, "POSITION"));
+  for (const auto& [name, accessor] : attributes.items()) {
+    const int index = index_of(attributes, name.c_str());
+    if (index < 0 || count_of(index) == vertices) continue;
+    throw InputError("glTF: " + name + " of mesh '" + mesh + "' has " + formatted("%.0f", count_of(index)) +
+                     " elements, rule: as many as POSITION, " + formatted("%.0f", vertices));
+  }
+}
+
 layers::Mesh read_primitive(GltfImport& import, const Json& primitive, int material) {
   const Json& attributes = object_of(primitive, "attributes");
   layers::Mesh mesh;
@@ -263,6 +278,9 @@ int add_primitive(GltfImport& import, const Json& primitive, const std::string& 
     import.lacks(mode == 0 ? "points are not drawn" : "lines are not drawn", name);
     return -1;
   }
+  const Json& attributes = object_of(primitive, "attributes");
+  if (index_of(attributes, "POSITION") >= 0 && !extension_of(primitive, "KHR_draco_mesh_compression"))
+    check_counts(import, attributes, name);  // the decoder of the other kind has its own
   layers::Mesh mesh = mesh_of_primitive(import, primitive, material_of(import, primitive));
   if (mesh.indices.empty()) return -1;
   mesh.name = name;

@@ -2,11 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <numbers>
 
 #include <glm/geometric.hpp>
 #include <opencv2/core.hpp>
 
 #include "layers/layer.h"
+#include "sequences/files/number_text.h"
+#include "sequences/import/far_plane.h"
 #include "sequences/import/gltf_scene.h"
 #include "sequences/import/limits.h"
 #include "sequences/import/lower_case.h"
@@ -182,11 +185,39 @@ std::vector<int> roots_of(GltfImport& import) {
 
 // --- Cameras
 
-void clip_planes(const Json& lens, double default_near, layers::Camera& camera) {
-  const double near_m = number_of(lens, "znear", default_near);
-  camera.near_m = near_m > 0 ? near_m : default_near;
+[[noreturn]] void refuse_lens(const layers::Camera& camera, const std::string& key, double value,
+                              const std::string& rule) {
+  throw InputError("glTF: camera '" + camera.name + "' has " + key + " " + formatted("%g", value) +
+                   ", rule: " + rule);
+}
+
+/// glTF 2.0, 5.13: zfar, where it is there, is greater than znear.
+void check_planes(const Json& lens, double least_near, bool near_may_be_least, const layers::Camera& camera) {
+  const double znear = number_of(lens, "znear", HUGE_VAL), zfar = number_of(lens, "zfar", HUGE_VAL);
+  if (!(znear > least_near || (near_may_be_least && znear == least_near)))
+    refuse_lens(camera, "znear", znear, near_may_be_least ? "at least 0" : "above 0");
+  if (lens.contains("zfar") && lens.contains("znear") && !(zfar > znear))
+    refuse_lens(camera, "zfar", zfar, "greater than znear, " + formatted("%g", znear));
+}
+
+void set_perspective(GltfImport& import, const Json& lens, layers::Camera& camera) {
+  constexpr double kDefaultNear = 0.1;
+  check_planes(lens, 0, false, camera);
+  const double fov = number_of(lens, "yfov", camera.fov_y_rad);
+  if (!(fov > 0 && fov < std::numbers::pi)) refuse_lens(camera, "yfov", fov, "above 0 and below pi");
+  if (!lens.contains("yfov")) import.warn("camera '" + camera.name + "' has no yfov; 0.9 is taken");
+  camera.fov_y_rad = fov;
+  camera.near_m = number_of(lens, "znear", kDefaultNear);
   camera.far_m = number_of(lens, "zfar", 0);
   if (!(camera.far_m > camera.near_m)) camera.far_m = kFarthest * camera.near_m;
+  if (!lens.contains("zfar")) return;
+  if (const std::string cut = beyond_far_plane(import.model.scene, camera); !cut.empty()) import.warn(cut);
+}
+
+void check_rectangle(const Json& lens, const layers::Camera& camera) {
+  check_planes(lens, 0, true, camera);
+  for (const char* side : {"xmag", "ymag"})
+    if (number_of(lens, side, 1) == 0) refuse_lens(camera, side, 0, "not 0");
 }
 
 layers::WorldBounds bounds_of(const layers::Scene& scene) {
@@ -202,6 +233,7 @@ layers::WorldBounds bounds_of(const layers::Scene& scene) {
 
 /// Stands far behind the camera and sees its rectangle at the distance of the middle of the scene.
 void set_long_lens(GltfImport& import, const Json& lens, layers::Camera& camera) {
+  check_rectangle(lens, camera);
   layers::Scene& scene = import.model.scene;
   const layers::WorldBounds bounds = bounds_of(scene);
   const dvec3 middle = bounds.empty() ? dvec3(0) : 0.5 * (bounds.lo + bounds.hi);
@@ -232,10 +264,7 @@ void import_camera(GltfImport& import, int index, const GltfNode& place) {
   if (type == "orthographic") {
     set_long_lens(import, object_of(from, "orthographic"), camera);
   } else {
-    const Json& lens = object_of(from, "perspective");
-    const double fov = number_of(lens, "yfov", camera.fov_y_rad);
-    if (fov > 0 && fov < 3.14) camera.fov_y_rad = fov;
-    clip_planes(lens, 0.1, camera);
+    set_perspective(import, object_of(from, "perspective"), camera);
   }
   import.model.scene.cameras.push_back(camera);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 
-// talisman_import PATH SECONDS MEGABYTES [FOLDER…]: reads a model (glTF 2 and OBJ by readers made for them, all others with
+// talisman_import PATH SECONDS MEGABYTES [FOLDER…]: reads a model (glTF 2, OBJ, PLY and STL by readers made for them, all others with
 // assimp) and writes it to stdout as a scene stream. FOLDER: where else files that it names may lie. Started by
 // import_model; limits itself first, so that nothing in the file can take more than that.
 
@@ -16,8 +16,10 @@
 
 #include "sequences/import/assimp_scene.h"
 #include "sequences/import/gltf_scene.h"
-#include "sequences/import/obj_scene.h"
 #include "sequences/import/scene_stream.h"
+#include "sequences/import/surfaces/obj_scene.h"
+#include "sequences/import/surfaces/ply_scene.h"
+#include "sequences/import/surfaces/stl_scene.h"
 
 namespace {
 
@@ -45,6 +47,8 @@ void limit_ourselves(int seconds, long megabytes) {
 talisman::sequences::ImportedModel read_model(const talisman::sequences::ModelPlace& place) {
   if (talisman::sequences::is_gltf2(place.path)) return talisman::sequences::read_gltf(place);
   if (talisman::sequences::is_obj(place.path)) return talisman::sequences::read_obj(place);
+  if (talisman::sequences::is_stl(place.path)) return talisman::sequences::read_stl(place);
+  if (talisman::sequences::is_ply(place.path)) return talisman::sequences::read_ply(place);
   return talisman::sequences::read_with_assimp(place);
 }
 

@@ -40,21 +40,4 @@ class RecordedFiles : public Assimp::DefaultIOSystem {
   FileUses& files_;
 };
 
-/// Answers the model's path with other bytes than the file has.
-class ReplacedModel : public RecordedFiles {
- public:
-  ReplacedModel(const ModelPlace& model, FileUses& files, const std::string& content)
-      : RecordedFiles(model, files), path_(model.path), content_(content) {}
-  bool Exists(const char* file) const override { return path_ == file || RecordedFiles::Exists(file); }
-  Assimp::IOStream* Open(const char* file, const char* mode = "rb") override {
-    if (path_ != file) return RecordedFiles::Open(file, mode);
-    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(content_.data()),
-                                      content_.size());
-  }
-
- private:
-  std::string path_;
-  const std::string& content_;
-};
-
 }  // namespace talisman::sequences

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sequences/import/lower_case.h"
+#include "sequences/import/texture_io.h"
 
 namespace talisman::sequences {
 
@@ -130,6 +131,19 @@ std::string find_texture(const ModelPlace& model, const std::string& written, Fi
   for (const fs::path& place : places_of(model))
     if (std::string found = similar_in(place, path, roots, files); !found.empty()) return found;
   return {};
+}
+
+layers::Texture read_named_texture(const ModelPlace& model, const std::string& written, FileUses& files) {
+  const std::string file = find_texture(model, written, files);
+  if (file.empty()) throw InputError("is missing");
+  files.look_for(file);
+  layers::Texture texture = read_texture(file);
+  texture.name = fs::path(file).filename().string();
+  return texture;
+}
+
+std::string missing_texture(const std::string& written, const std::string& why) {
+  return "texture '" + written + "': " + why + "; a plain colour is used";
 }
 
 }  // namespace talisman::sequences

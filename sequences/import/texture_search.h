@@ -18,6 +18,7 @@
 #include <string>
 #include <vector>
 
+#include "layers/scene.h"
 #include "sequences/files/file_uses.h"
 
 namespace talisman::sequences {
@@ -34,5 +35,11 @@ std::string find_file(const ModelPlace& model, const std::string& written, FileU
 
 /// The picture by all rules; empty if there is none. Files that no extension marks as pictures are not taken.
 std::string find_texture(const ModelPlace& model, const std::string& written, FileUses& files);
+
+/// The picture read, with its file's name. Throws InputError.
+layers::Texture read_named_texture(const ModelPlace& model, const std::string& written, FileUses& files);
+
+/// What is said where that fails.
+std::string missing_texture(const std::string& written, const std::string& why);
 
 }  // namespace talisman::sequences

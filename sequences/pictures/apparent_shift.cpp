@@ -129,21 +129,62 @@ cv::Mat2f shift_of(const cv::Mat4f& shown, const cv::Mat4f& fresh, int coarser) 
   return shift;
 }
 
-/// Where a part of a displacement does as well, but for what nobody sees, it is that part.
-void shorten_where_less_will_do(const cv::Mat4f& shown, const cv::Mat4f& fresh, cv::Mat2f& shift) {
+/// Both pictures, once as the eye weighs them and once in linear light, blurred since resampling blurs.
+struct Compared {
+  cv::Mat4f eye_shown, eye_fresh, shown, fresh;
+};
+
+cv::Mat4f blurred(const cv::Mat4f& linear) {
+  cv::Mat4f image;
+  cv::GaussianBlur(linear, image, {}, 1, 1, cv::BORDER_REPLICATE);
+  return image;
+}
+
+/// ‖shown - fresh‖² of the colours.
+cv::Mat1f color_squares(const cv::Mat4f& shown, const cv::Mat4f& fresh) {
+  cv::Mat1f squares(fresh.size());
+  std::transform(shown.begin(), shown.end(), fresh.begin(), squares.begin(),
+                 [](const cv::Vec4f& p, const cv::Vec4f& q) {
+                   const cv::Vec4f d = p - q;
+                   return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
+                 });
+  return squares;
+}
+
+/// The means over the window that a displacement leaves.
+struct Left {
+  cv::Mat1f all;     ///< of the squares, as the eye weighs them, with alpha
+  cv::Mat1f colors;  ///< of the squares of the colours in linear light
+  cv::Mat1f cover;   ///< of the squares of alpha
+};
+
+Left left_by(const Compared& pictures, const cv::Mat2f& shift) {
+  const cv::Mat4f error = displaced(pictures.eye_shown, shift) - pictures.eye_fresh;
+  Left left{summed(error, error), color_squares(displaced(pictures.shown, shift), pictures.fresh),
+            cv::Mat1f(error.size())};
+  std::transform(error.begin(), error.end(), left.cover.begin(),
+                 [](const cv::Vec4f& e) { return e[3] * e[3]; });
+  for (cv::Mat1f* mean : {&left.colors, &left.cover})
+    cv::GaussianBlur(*mean, *mean, {}, kWindow_px, kWindow_px, cv::BORDER_REPLICATE);
+  return left;
+}
+
+/// Where a part of a displacement does as well, but for what nobody sees, it is that part; and where the light that
+/// is known to change is enough.
+void shorten_where_less_will_do(const Compared& pictures, double light, cv::Mat2f& shift) {
   constexpr float kUnseen = 1.0f / 255, kAsWell = 1.1f;
-  const auto squares = [&](const cv::Mat2f& d) {
-    const cv::Mat4f error = displaced(shown, d) - fresh;
-    return summed(error, error);
-  };
-  const cv::Mat1f least = squares(shift);
+  const auto as_well = [](float with, float least) { return with <= kAsWell * least + kUnseen * kUnseen; };
+  const auto announced = static_cast<float>(light * light);
+  const Left least = left_by(pictures, shift);
   cv::Mat2f shortest = shift.clone();
   for (const double part : {0.75, 0.5, 0.25, 0.0}) {
     const cv::Mat2f shorter = shift * part;
-    const cv::Mat1f with = squares(shorter);
+    const Left with = left_by(pictures, shorter);
     for (int y = 0; y < shift.rows; ++y)
       for (int x = 0; x < shift.cols; ++x)
-        if (with(y, x) <= kAsWell * least(y, x) + kUnseen * kUnseen) shortest(y, x) = shorter(y, x);
+        if (as_well(with.all(y, x), least.all(y, x)) ||
+            (with.colors(y, x) <= announced && as_well(with.cover(y, x), least.cover(y, x))))
+          shortest(y, x) = shorter(y, x);
   }
   shift = shortest;
 }
@@ -182,18 +223,7 @@ void shorten(double longest, cv::Mat2f& shift) {
 /// Beside the displacement that was found: of a structure finer than the window no one displacement is right.
 constexpr double kBeside_px = 1;
 
-/// ‖shown - fresh‖² of the colours.
-cv::Mat1f color_squares(const cv::Mat4f& shown, const cv::Mat4f& fresh) {
-  cv::Mat1f squares(fresh.size());
-  std::transform(shown.begin(), shown.end(), fresh.begin(), squares.begin(),
-                 [](const cv::Vec4f& p, const cv::Vec4f& q) {
-                   const cv::Vec4f d = p - q;
-                   return d[0] * d[0] + d[1] * d[1] + d[2] * d[2];
-                 });
-  return squares;
-}
-
-/// The least of them over the displacements `within` and those about kBeside_px beside them, none longer than
+/// The least of ‖shown - fresh‖² over the displacements `within` and those about kBeside_px beside them, none longer than
 /// `longest_px`. `carried`: shown, displaced by `within`.
 cv::Mat1f least_squares(const cv::Mat4f& shown, const cv::Mat4f& fresh, const cv::Mat2f& within,
                         const cv::Mat4f& carried, double longest_px) {
@@ -211,11 +241,8 @@ cv::Mat1f least_squares(const cv::Mat4f& shown, const cv::Mat4f& fresh, const cv
   return least;
 }
 
-void measure_rest(const cv::Mat4f& linear_shown, const cv::Mat4f& linear_fresh, cv::Mat2f shift,
-                  double explained_px, ApparentShift& result) {
-  cv::Mat4f shown, fresh;
-  cv::GaussianBlur(linear_shown, shown, {}, 1, 1, cv::BORDER_REPLICATE);
-  cv::GaussianBlur(linear_fresh, fresh, {}, 1, 1, cv::BORDER_REPLICATE);
+void measure_rest(const Compared& pictures, cv::Mat2f shift, double explained_px, ApparentShift& result) {
+  const cv::Mat4f &shown = pictures.shown, &fresh = pictures.fresh;
   shorten(explained_px, shift);
   const cv::Mat4f carried = displaced(shown, shift);
   const cv::Mat1f rest = least_squares(shown, fresh, shift, carried, explained_px);
@@ -236,18 +263,19 @@ void measure_rest(const cv::Mat4f& linear_shown, const cv::Mat4f& linear_fresh, 
 
 }  // namespace
 
-ApparentShift apparent_shift(const chunker::Frame& shown, const chunker::Frame& fresh, double explained_px) {
+ApparentShift apparent_shift(const chunker::Frame& shown, const chunker::Frame& fresh,
+                             const ExplainedChange& explained) {
   TALISMAN_CHECK(shown.width == fresh.width && shown.height == fresh.height);
   ApparentShift result;
   result.seen = seen_in(shown, fresh);
   if (result.seen.width == 0) return result;
   const cv::Mat4f linear_shown = linear_of(shown, result.seen), linear_fresh = linear_of(fresh, result.seen);
-  const cv::Mat4f eye_fresh = perceived(linear_fresh);
-  const cv::Mat4f eye_shown = perceived(linear_shown);
-  cv::Mat2f shift = shift_of(eye_shown, eye_fresh, levels_for(explained_px));
-  shorten_where_less_will_do(eye_shown, eye_fresh, shift);
-  measure_shift(eye_fresh, shift, result);
-  measure_rest(linear_shown, linear_fresh, shift, explained_px, result);
+  const Compared pictures{perceived(linear_shown), perceived(linear_fresh), blurred(linear_shown),
+                          blurred(linear_fresh)};
+  cv::Mat2f shift = shift_of(pictures.eye_shown, pictures.eye_fresh, levels_for(explained.shift_px));
+  shorten_where_less_will_do(pictures, explained.light, shift);
+  measure_shift(pictures.eye_fresh, shift, result);
+  measure_rest(pictures, shift, explained.shift_px, result);
   return result;
 }
 

@@ -12,7 +12,8 @@
 ///
 /// ε is a share of the window's structure. Along an edge nothing is known of the displacement, and a light that
 /// changes looks like one: so of d, of three quarters, half and a quarter of it and of none the shortest is taken
-/// that leaves a mean square of at most 1.1 times d's and 1 / 255² more.
+/// that leaves a mean square of at most 1.1 times d's and 1 / 255² more; or, where it is known that light changes,
+/// that leaves no more of the colours than that change, and as little of the silhouette.
 /// Only pixels with structure count (mean squared gradient of the window at least kStructure²). Where a
 /// picture repeats itself within a few pixels a displacement may be taken for a smaller one.
 
@@ -35,8 +36,15 @@ struct ApparentShift {
   Crop seen;               ///< where one of the pictures is not clear; empty: both are
 };
 
-/// `shown` and `fresh` are premultiplied, with alpha, of equal size. `explained_px` ≥ 0 is the displacement that
-/// is known of and no part of `rms`. Deterministic. Cost: about 2 µs per pixel that is seen.
-ApparentShift apparent_shift(const chunker::Frame& shown, const chunker::Frame& fresh, double explained_px);
+/// What is known of beforehand.
+struct ExplainedChange {
+  double shift_px = 0;  ///< ≥ 0; no part of `rms`
+  double light = 0;  ///< ≥ 0, of a colour (as `rms`); what differs by no more is not taken for a displacement
+};
+
+/// `shown` and `fresh` are premultiplied, with alpha, of equal size. Deterministic. Cost: about 2 µs per pixel that
+/// is seen.
+ApparentShift apparent_shift(const chunker::Frame& shown, const chunker::Frame& fresh,
+                             const ExplainedChange& explained);
 
 }  // namespace talisman::sequences

@@ -25,13 +25,23 @@ cv::Scalar scalar(Rgb color) { return {double(color[0]), double(color[1]), doubl
 
 double font_scale(int scale) { return scale <= 1 ? 0.38 : 0.3 * scale; }
 
-/// OpenCV would draw a question mark for every byte.
-std::string ascii(const std::string& text) {
-  std::string plain;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte >= 0x20 && byte < 0x7f) plain += c;
-    if (byte < 0x20 || byte >= 0xc0) plain += '?';  // bytes from 0x80 on continue a sign
+/// OpenCV would draw a question mark for every byte. The middle dot is a blank here, and its place.
+struct PlainText {
+  std::string letters;
+  std::vector<std::size_t> dots;  ///< indices of the blanks that stand for one
+};
+
+PlainText ascii(const std::string& text) {
+  PlainText plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    if (text.compare(i, 2, "·") == 0) {
+      plain.dots.push_back(plain.letters.size());
+      plain.letters += ' ';
+      continue;
+    }
+    if (byte >= 0x20 && byte < 0x7f) plain.letters += text[i];
+    if (byte < 0x20 || byte >= 0xc0) plain.letters += '?';  // bytes from 0x80 on continue a sign
   }
   return plain;
 }
@@ -59,15 +69,21 @@ Image8 plain_image(int width, int height, Rgb color) {
 }
 
 ivec2 text_size(const std::string& text, int scale) {
-  const TextBox box = box_of(ascii(text), scale);
+  const TextBox box = box_of(ascii(text).letters, scale);
   return {box.width, box.above + box.below};
 }
 
 void draw_text(Image8& image, const std::string& text, ivec2 at, Rgb color, int scale) {
   if (image.rgb.empty()) return;
-  const std::string plain = ascii(text);
-  cv::putText(view_of(image), plain, {at.x, at.y + box_of(plain, scale).above}, kFont, font_scale(scale),
-              scalar(color), 1, cv::LINE_AA);
+  const PlainText plain = ascii(text);
+  const int baseline = at.y + box_of(plain.letters, scale).above;
+  cv::putText(view_of(image), plain.letters, {at.x, baseline}, kFont, font_scale(scale), scalar(color), 1,
+              cv::LINE_AA);
+  for (const std::size_t dot : plain.dots) {
+    const int before = box_of(plain.letters.substr(0, dot), scale).width,
+              after = box_of(plain.letters.substr(0, dot + 1), scale).width;
+    tint(image, {at.x + (before + after) / 2 - 1, baseline - 4 * scale, 2, 2}, color, 1);
+  }
 }
 
 void draw_line(Image8& image, dvec2 from, dvec2 to, Rgb color) {

@@ -26,7 +26,8 @@ Image8 plain_image(int width, int height, Rgb color);
 /// The box that a line of text takes, with the room below the baseline.
 layers::ivec2 text_size(const std::string& text, int scale);
 
-/// A line of text, the upper left corner of its box at `at`. Signs beyond ASCII are question marks.
+/// A line of text, the upper left corner of its box at `at`. Signs beyond ASCII are question marks,
+/// but for the middle dot.
 void draw_text(Image8& image, const std::string& text, layers::ivec2 at, Rgb color, int scale);
 
 /// An antialiased line between two places in the picture, in pixels (the centre of the first pixel is at 0.5,

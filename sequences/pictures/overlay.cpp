@@ -3,9 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <optional>
 
+#include <glm/geometric.hpp>
+
 #include "layers/check.h"
+#include "sequences/pictures/box_placement.h"
 #include "sequences/pictures/image_drawing.h"
 
 namespace talisman::sequences {
@@ -20,6 +24,7 @@ using layers::RectI;
 constexpr int kLargePx = 600;      // from this size on pictures have the larger letters
 constexpr double kMarginPx = 2;    // lines just outside still reach in
 constexpr int kLabelMarginPx = 3;  // of the letters in their box
+constexpr int kLabelGapPx = 2;     // between labels
 constexpr Rgb kLabelGround{12, 12, 16};
 
 struct Segment {
@@ -72,80 +77,108 @@ std::vector<Segment> visible_edges(const Outline& outline, int width, int height
   return edges;
 }
 
-/// Is the middle of the picture inside the sprite? Then a sprite without a visible edge covers it all.
-bool covers_middle(const Outline& outline, int width, int height) {
-  const auto corners = corners_of(outline);
-  const dvec3 middle(width / 2.0, height / 2.0, 1);
-  int positive = 0, negative = 0;
-  for (int i = 0; i < 4; ++i) {
-    const dvec3 &a = corners[i], &b = corners[(i + 1) % 4];
-    if (!(a.z > 0)) return false;
-    const double side =
-        middle.x * (a.y * b.z - a.z * b.y) + middle.y * (a.z * b.x - a.x * b.z) + (a.x * b.y - a.y * b.x);
-    positive += side > 0;
-    negative += side < 0;
+/// What of the sprite is in view: its corners clipped to the picture and to denominators above 0.
+std::vector<dvec2> visible_corners(const Outline& outline, int width, int height) {
+  const auto sprite = corners_of(outline);
+  std::vector<dvec3> polygon(sprite.begin(), sprite.end());
+  const dvec3 planes[] = {{0, 0, 1}, {1, 0, 0}, {-1, 0, double(width)}, {0, 1, 0}, {0, -1, double(height)}};
+  for (const dvec3& plane : planes) {
+    std::vector<dvec3> kept;
+    for (std::size_t i = 0; i < polygon.size(); ++i) {
+      const dvec3 &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+      const double at_a = glm::dot(plane, a), at_b = glm::dot(plane, b);
+      if (at_a >= 0) kept.push_back(a);
+      if ((at_a < 0) != (at_b < 0)) kept.push_back(a + (b - a) * (at_a / (at_a - at_b)));
+    }
+    polygon = std::move(kept);
   }
-  return positive == 4 || negative == 4;
+  std::vector<dvec2> corners;
+  for (const dvec3& p : polygon)
+    if (const dvec2 c{p.x / p.z, p.y / p.z}; std::isfinite(c.x + c.y)) corners.push_back(c);
+  return corners;
 }
 
-/// The corner that the label belongs to: the first corner of the sprite in view, else the first visible end
-/// of an edge.
-std::optional<dvec2> label_anchor(const Outline& outline, const std::vector<Segment>& edges, int width,
-                                  int height) {
-  for (const dvec3& c : corners_of(outline)) {
-    const dvec2 p{c.x / c.z, c.y / c.z};
-    if (c.z > 0 && p.x >= 0 && p.x < width && p.y >= 0 && p.y < height) return p;
-  }
-  if (!edges.empty()) return edges.front().a;
-  if (covers_middle(outline, width, height)) return dvec2{0, 0};
-  return std::nullopt;
+/// Where the label belongs: of what is in view that which lies highest, and left. It moves as the sprite does,
+/// also where a corner leaves the picture; level edges, the most frequent, have their left end for sure.
+std::optional<dvec2> label_anchor(const Outline& outline, int width, int height) {
+  const auto height_of = [](dvec2 p) { return p.y + 0.3 * p.x; };
+  std::optional<dvec2> anchor;
+  for (const dvec2& p : visible_corners(outline, width, height))
+    if (!anchor || height_of(p) < height_of(*anchor)) anchor = p;
+  return anchor;
 }
 
-bool overlap(const RectI& a, const RectI& b) {
-  return a.x0 < b.x1 && b.x0 < a.x1 && a.y0 < b.y1 && b.y0 < a.y1;
+int letters_of(const Image8& image) { return std::min(image.width, image.height) >= kLargePx ? 2 : 1; }
+
+// --- Labels
+
+/// With a gap to the right and below, so that neighbours can be told apart.
+ivec2 label_size(const std::string& text, int scale) {
+  const ivec2 letters = text_size(text, scale);
+  return {letters.x + 2 * kLabelMarginPx + kLabelGapPx, letters.y + kLabelMarginPx + kLabelGapPx};
 }
 
-RectI moved_inside(RectI box, int width, int height) {
-  const int dx = std::max(std::min(0, width - box.x1), -box.x0),
-            dy = std::max(std::min(0, height - box.y1), -box.y0);
-  return {box.x0 + dx, box.y0 + dy, box.x1 + dx, box.y1 + dy};
+void draw_label(Image8& image, const std::string& text, const RectI& box, Rgb color, int scale) {
+  tint(image, {box.x0, box.y0, box.width() - kLabelGapPx, box.height() - kLabelGapPx}, kLabelGround, 0.75);
+  draw_text(image, text, {box.x0 + kLabelMarginPx, box.y0 + kLabelMarginPx}, color, scale);
 }
 
-class Labels {
- public:
-  Labels(Image8& image, int scale) : image_(image), scale_(scale) {}
+/// Where there is no room: at its place, over others; from its beginning, if it is wider than the picture.
+RectI crowded_place(dvec2 at, ivec2 size, const Image8& image) {
+  const auto inside = [](double wish, int length, int all) {
+    return static_cast<int>(std::clamp(wish, 0.0, std::max(double(all - length), 0.0)));
+  };
+  const ivec2 p{inside(at.x, size.x, image.width), inside(at.y, size.y, image.height)};
+  return {p.x, p.y, p.x + size.x, p.y + size.y};
+}
 
-  void draw(const std::string& text, dvec2 anchor, Rgb color) {
-    if (text.empty()) return;
-    const ivec2 letters = text_size(text, scale_);
-    const RectI box = free_place(anchor, {letters.x + 2 * kLabelMarginPx, letters.y + kLabelMarginPx});
-    taken_.push_back(box);
-    tint(image_, {box.x0, box.y0, box.x1 - box.x0, box.y1 - box.y0}, kLabelGround, 0.75);
-    draw_text(image_, text, {box.x0 + kLabelMarginPx, box.y0 + kLabelMarginPx}, color, scale_);
+void draw_labels(Image8& image, const std::vector<Outline>& outlines, int oldest_frames,
+                 const std::vector<RectI>& kept_free) {
+  const int scale = letters_of(image);
+  std::vector<std::size_t> order(outlines.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return outlines[a].rank < outlines[b].rank; });
+  std::vector<BoxWish> wishes;
+  std::vector<const Outline*> labelled;
+  for (const std::size_t i : order) {
+    const auto anchor = label_anchor(outlines[i], image.width, image.height);
+    if (outlines[i].label.empty() || !anchor) continue;
+    constexpr double kBesideTheLine_px = 2;
+    wishes.push_back(
+        {label_size(outlines[i].label, scale),
+         {{std::floor(anchor->x) + kBesideTheLine_px, std::floor(anchor->y) + kBesideTheLine_px}}});
+    labelled.push_back(&outlines[i]);
   }
+  const auto places = place_boxes({0, 0, image.width, image.height}, kept_free, wishes);
+  for (std::size_t i = 0; i < places.size(); ++i)
+    draw_label(image, labelled[i]->label,
+               places[i].value_or(crowded_place(wishes[i].at[0], wishes[i].size_px, image)),
+               age_color(labelled[i]->age_frames, oldest_frames), scale);
+}
 
- private:
-  /// At the anchor, inside the picture, or else below or above the labels that are already there.
-  RectI free_place(dvec2 anchor, ivec2 size) const {
-    const int x = static_cast<int>(std::floor(anchor.x)) + 2, y = static_cast<int>(std::floor(anchor.y)) + 2;
-    const auto is_free = [this](const RectI& box) {
-      return std::none_of(taken_.begin(), taken_.end(), [&box](const RectI& t) { return overlap(t, box); });
-    };
-    const auto at = [&](int row) {
-      return moved_inside({x, y + row * size.y, x + size.x, y + (row + 1) * size.y}, image_.width,
-                          image_.height);
-    };
-    const int rows = image_.height / std::max(size.y, 1);
-    for (int step = 0; step <= rows; ++step)
-      for (const int row : {step, -step})
-        if (const RectI box = at(row); is_free(box)) return box;
-    return at(0);
-  }
+// --- The legend
 
-  Image8& image_;
-  int scale_;
-  std::vector<RectI> taken_;
+constexpr int kBarPx = 60;  ///< of the colours of all ages
+
+/// What the two lines of the legend say: of the boxes; of the colours, with a gap for each sign.
+constexpr const char* kBoxWords = "box: a sprite, carried by its warp";
+constexpr const char* kFreshWords = "drawn now";
+std::string old_words(int oldest_frames) { return "1 ... " + std::to_string(oldest_frames) + "+ frames ago"; }
+
+struct LegendSizes {
+  int line = 0, fresh = 0, all = 0, boxes = 0;  ///< height of a line; widths
 };
+
+LegendSizes legend_sizes(int scale, int oldest_frames) {
+  LegendSizes sizes;
+  sizes.line = text_size(kBoxWords, scale).y + kLabelMarginPx;
+  sizes.fresh = sizes.line + text_size(kFreshWords, scale).x + 4 * kLabelMarginPx;
+  sizes.all = kLabelMarginPx + sizes.fresh + scale * kBarPx + text_size(old_words(oldest_frames), scale).x +
+              3 * kLabelMarginPx;
+  sizes.boxes = text_size(kBoxWords, scale).x + 2 * kLabelMarginPx;
+  return sizes;
+}
 
 }  // namespace
 
@@ -162,22 +195,53 @@ std::array<std::uint8_t, 3> age_color(int age_frames, int oldest_frames) {
   return color;
 }
 
-void draw_outlines(Image8& image, const std::vector<Outline>& outlines, int oldest_frames) {
+void draw_outlines(Image8& image, const std::vector<Outline>& outlines, int oldest_frames,
+                   const std::vector<RectI>& kept_free) {
   TALISMAN_CHECK_EQ(image.rgb.size(), static_cast<std::size_t>(image.width) * image.height * 3);
   TALISMAN_CHECK_GE(oldest_frames, 1);
   if (image.rgb.empty()) return;
-  const int scale = std::min(image.width, image.height) >= kLargePx ? 2 : 1;
-  std::vector<std::optional<dvec2>> anchors;
-  for (const Outline& outline : outlines) {
-    const auto edges = visible_edges(outline, image.width, image.height);
-    for (const Segment& edge : edges)
+  for (const Outline& outline : outlines)
+    for (const Segment& edge : visible_edges(outline, image.width, image.height))
       draw_line(image, edge.a, edge.b, age_color(outline.age_frames, oldest_frames));
-    anchors.push_back(label_anchor(outline, edges, image.width, image.height));
-  }
-  Labels labels(image, scale);
-  for (std::size_t i = 0; i < outlines.size(); ++i)
-    if (anchors[i])
-      labels.draw(outlines[i].label, *anchors[i], age_color(outlines[i].age_frames, oldest_frames));
+  draw_labels(image, outlines, oldest_frames, kept_free);
+}
+
+std::optional<RectI> legend_place(const Image8& image, int oldest_frames) {
+  const LegendSizes sizes = legend_sizes(letters_of(image), oldest_frames);
+  const int width = std::max(sizes.all, sizes.boxes), height = 2 * sizes.line + kLabelMarginPx;
+  // A legend that takes more than a fifth of the picture hides what it is the legend of.
+  if (width > image.width || 5 * height > image.height) return std::nullopt;
+  return RectI{0, image.height - height, width, image.height};
+}
+
+void draw_legend(Image8& image, int oldest_frames) {
+  const auto place = legend_place(image, oldest_frames);
+  if (!place) return;
+  const int scale = letters_of(image);
+  const LegendSizes sizes = legend_sizes(scale, oldest_frames);
+  constexpr Rgb kWords{235, 235, 235};
+  tint(image, {place->x0, place->y0, place->width(), place->height()}, kLabelGround, 0.75);
+  int x = place->x0 + kLabelMarginPx, y = place->y0 + kLabelMarginPx;
+  draw_text(image, kBoxWords, {x, y}, kWords, scale);
+  y += sizes.line;
+  const int sign = sizes.line - 2 * kLabelMarginPx;
+  tint(image, {x, y, sign, sign}, age_color(0, oldest_frames), 1);
+  draw_text(image, kFreshWords, {x + sign + kLabelMarginPx, y}, kWords, scale);
+  x += sizes.fresh;
+  for (int i = 0; i < scale * kBarPx; ++i)
+    tint(image, {x + i, y, 1, sign}, age_color(1 + i * oldest_frames / (scale * kBarPx), oldest_frames), 1);
+  draw_text(image, old_words(oldest_frames), {x + scale * kBarPx + kLabelMarginPx, y}, kWords, scale);
+}
+
+std::string outline_label(const std::string& layer, int age_frames) {
+  if (age_frames <= 0) return layer + " · new";
+  return layer + " · " + std::to_string(age_frames) + (age_frames == 1 ? " frame" : " frames");
+}
+
+void draw_overlay(Image8& image, const std::vector<Outline>& outlines, int oldest_frames) {
+  const auto legend = legend_place(image, oldest_frames);
+  draw_outlines(image, outlines, oldest_frames, legend ? std::vector<RectI>{*legend} : std::vector<RectI>{});
+  draw_legend(image, oldest_frames);
 }
 
 }  // namespace talisman::sequences

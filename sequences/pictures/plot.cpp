@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/pictures/plot.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -9,6 +10,7 @@
 #include "layers/check.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/child_process.h"
+#include "sequences/pictures/plot_layout.h"
 
 namespace talisman::sequences {
 namespace {
@@ -45,9 +47,6 @@ std::string quoted(const std::string& text) {
   return result + "'";
 }
 
-bool drawable(double v, const PlotAxis& axis) { return std::isfinite(v) && (!axis.logarithmic || v > 0); }
-bool drawable(const PlotPoint& p, const Plot& plot) { return drawable(p.x, plot.x) && drawable(p.y, plot.y); }
-
 bool anything_drawable(const PlotSeries& series, const Plot& plot) {
   for (const PlotPoint& p : series.points)
     if (drawable(p, plot)) return true;
@@ -77,85 +76,217 @@ const char* style_words(SeriesStyle style) {
   return "lines";
 }
 
-/// Okabe & Ito 2008, without yellow (too pale on white) and with black last.
-constexpr std::array kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#000000"};
-/// Filled circle, square, triangles, diamond; then hollow ones.
-constexpr std::array kMarkers = {7, 5, 9, 13, 11, 6, 4};
+// --- Colours, dashes and markers
 
-std::string curve(const PlotSeries& series, std::size_t index) {
-  std::string color = kColors[index % kColors.size()];
+/// Okabe & Ito 2008, without yellow (too pale on white) and with black last; then wine, indigo, olive, grey
+/// and dark green of Tol's palettes.
+constexpr std::array kColors = {"#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00",
+                                "#000000", "#882255", "#332288", "#999933", "#888888", "#225522"};
+/// Filled circle, square, triangles, diamond, pentagon; then the hollow ones.
+constexpr std::array kMarkers = {7, 5, 9, 13, 11, 15, 6, 4, 8, 12, 10, 14};
+
+/// How a series looks: indices of the tables above, and which of those of its colour it is.
+struct Look {
+  std::size_t color = 0, marker = 0;
+  int dash = 1;
+};
+
+std::vector<Look> looks_of(const Plot& plot) {
+  std::vector<Look> looks;
+  for (std::size_t i = 0; i < plot.series.size(); ++i) {
+    const int wanted = plot.series[i].color;
+    Look look{(wanted >= 0 ? static_cast<std::size_t>(wanted) : i) % kColors.size(), i % kMarkers.size(), 1};
+    for (const Look& other : looks)
+      if (other.color == look.color) look.dash = std::max(look.dash, other.dash + 1);
+    const auto taken = [&] {
+      return std::any_of(looks.begin(), looks.end(), [&](const Look& other) {
+        return other.color == look.color && other.marker == look.marker;
+      });
+    };
+    for (std::size_t tries = 0; tries < kMarkers.size() && taken(); ++tries)
+      look.marker = (look.marker + 1) % kMarkers.size();
+    looks.push_back(look);
+  }
+  return looks;
+}
+
+bool has_line(SeriesStyle style) { return style != SeriesStyle::Points && style != SeriesStyle::Cloud; }
+std::string curve(const PlotSeries& series, const Look& look, std::size_t index, const std::string& title) {
+  std::string color = kColors[look.color];
   if (series.style == SeriesStyle::Cloud) color.insert(1, "A0");  // gnuplot: two digits of transparency first
   std::string text = "$data" + std::to_string(index) + " using 1:2 with " + style_words(series.style) +
                      " linecolor rgb '" + color + "'";
   if (series.style == SeriesStyle::Cloud) text += " pointtype 7 pointsize 0.35";
-  if (series.style != SeriesStyle::Points && series.style != SeriesStyle::Cloud) {
+  if (has_line(series.style)) {
     text += " linewidth 2";
-    if (index >= kColors.size()) text += " dashtype " + std::to_string(1 + index / kColors.size());
+    if (look.dash > 1) text += " dashtype " + std::to_string(look.dash);
   }
-  if (series.style == SeriesStyle::Points || series.style == SeriesStyle::LinePoints)
-    text += " pointtype " + std::to_string(kMarkers[index % kMarkers.size()]) + " pointsize 0.7";
-  return text + " title " + quoted(series.name);
+  if (has_markers(series.style))
+    text += " pointtype " + std::to_string(kMarkers[look.marker]) + " pointsize 0.7";
+  return text + " title " + quoted(title);
 }
 
-/// What is written beside the points, in the colour of the series; slanted, so that neighbours do not run
-/// into each other.
-std::string label_words(const PlotSeries& series, const Plot& plot, std::size_t index) {
+// --- Points of few samples
+
+/// White points over the markers, and what they mean.
+void add_hollow_points(const Plot& plot, std::string& script, std::string& curves) {
+  std::string block;
+  for (const PlotSeries& series : plot.series)
+    for (std::size_t i = 0; i < series.points.size(); ++i)
+      if (few_samples(series, i, plot))
+        block += number(series.points[i].x) + " " + number(series.points[i].y) + "\n";
+  if (block.empty()) return;
+  script += "$few << END_OF_DATA\n" + block + "END_OF_DATA\n";
+  curves += ", \\\n     $few using 1:2 with points linecolor rgb 'white' pointtype 7 pointsize 0.35 notitle" +
+            std::string(
+                ", \\\n     keyentry with points linecolor rgb '#404040' pointtype 6 pointsize 0.6 title ") +
+            quoted(few_samples_words());
+}
+
+// --- Labels
+
+/// A place of the picture, for gnuplot: from the lower left corner, the width and height 1.
+std::string on_screen(double x_px, double y_px, const PlotFiles& files) {
+  return "screen " + number(x_px / files.width_px) + ", screen " + number(1 - y_px / files.height_px);
+}
+
+/// Three quarters as bright: letters are thin.
+std::string letter_color(const char* color) {
+  std::string darker = "#";
+  for (int channel = 0; channel < 3; ++channel) {
+    const int value = std::stoi(std::string(color + 1 + 2 * channel, 2), nullptr, 16) * 3 / 4;
+    for (const int digit : {value / 16, value % 16}) darker += "0123456789ABCDEF"[digit];
+  }
+  return darker;
+}
+
+/// The nearest place of the box to the point.
+layers::dvec2 end_of_join(const PlotLabel& label) {
+  const layers::RectI& box = label.box_px;
+  return {std::clamp(label.point_px.x, double(box.x0), double(box.x1)),
+          std::clamp(label.point_px.y, double(box.y0), double(box.y1))};
+}
+
+/// What is written beside the points, in the colour of the series, on a ground that pales what lies under it.
+std::string label_words(const PlotLayout& layout, const std::vector<Look>& looks, const PlotFiles& files) {
   std::string text;
-  for (std::size_t i = 0; i < series.labels.size(); ++i) {
-    const PlotPoint& p = series.points[i];
-    if (series.labels[i].empty() || !drawable(p, plot)) continue;
-    text += "set label " + quoted(series.labels[i]) + " at " + number(p.x) + "," + number(p.y) +
-            " offset 0.5,0.5 rotate by 40 font 'Helvetica,11' textcolor rgb '" +
-            kColors[index % kColors.size()] + "'\n";
+  for (const PlotLabel& label : layout.labels) {
+    const char* color = kColors[looks[label.series].color];
+    const layers::RectI& box = label.box_px;
+    if (label.joined) {
+      const layers::dvec2 end = end_of_join(label);
+      text += "set arrow from " + on_screen(label.point_px.x, label.point_px.y, files) + " to " +
+              on_screen(end.x, end.y, files) + " nohead front linewidth 0.7 linecolor rgb '" + color + "'\n";
+    }
+    text += "set object rectangle from " + on_screen(box.x0, box.y1, files) + " to " +
+            on_screen(box.x1, box.y0, files) +
+            " front fillcolor rgb 'white' fillstyle transparent solid 0.5 noborder\n";
+    text += "set label " + quoted(label.text) + " at " +
+            on_screen(box.x0 + 2, (box.y0 + box.y1) / 2.0, files) +
+            " left front font 'Helvetica,11' textcolor rgb '" + letter_color(color) + "'\n";
   }
+  if (layout.without_room > 0)
+    text += "set label " + quoted(std::to_string(layout.without_room) + " labels have no room") + " at " +
+            on_screen(layout.area_px.x1, files.height_px - 12, files) + " right font 'Helvetica,11'\n";
   return text;
 }
 
-std::string axis_words(const char* which, const PlotAxis& axis) {
-  std::string text = std::string("set ") + which + "label " + quoted(with_unit(axis, " (", ")")) + "\n";
-  if (axis.logarithmic) text += std::string("set logscale ") + which + "\nset format " + which + " '%g'\n";
+// --- Axes
+
+constexpr int kTic_px = 60;  ///< of an axis for one number
+
+std::string short_number(double v) {
+  std::array<char, 40> text;
+  return {text.data(),
+          std::to_chars(text.data(), text.data() + text.size(), v, std::chars_format::general, 6).ptr};
+}
+
+std::string tic_words(const char* which, const AxisRange& range, int most) {
+  const AxisTics tics = logarithmic_tics(range, most);
+  std::string text;
+  for (const double v : tics.numbers)
+    text += (text.empty() ? "" : ", ") + quoted(short_number(v)) + " " + number(v);
+  for (const double v : tics.plain)
+    if (std::find(tics.numbers.begin(), tics.numbers.end(), v) == tics.numbers.end())
+      text += std::string(text.empty() ? "" : ", ") + "'' " + number(v) + " 1";
+  return std::string("set ") + which + "tics (" + text + ")\n";
+}
+
+std::string axis_words(const char* which, const PlotAxis& axis, const AxisRange& range, int length_px,
+                       int most) {
+  std::string text = std::string("set ") + which + "label " +
+                     quoted(fitted_text(with_unit(axis, " (", ")"), kTextFont_px, length_px + 60)) + "\n";
+  text += std::string("set ") + which + "range [" + number(range.lo) + ":" + number(range.hi) + "]\n";
+  if (axis.logarithmic) text += std::string("set logscale ") + which + "\n" + tic_words(which, range, most);
   return text;
+}
+
+std::string margin_words(const layers::RectI& area, const PlotFiles& files) {
+  const auto at = [](double px, int of) { return " at screen " + number(px / of) + "\n"; };
+  return "set lmargin" + at(area.x0, files.width_px) + "set rmargin" + at(area.x1, files.width_px) +
+         "set tmargin" + at(files.height_px - area.y0, files.height_px) + "set bmargin" +
+         at(files.height_px - area.y1, files.height_px);
 }
 
 /// gnuplot refuses a plot without points; an empty picture that says so is more useful than none.
-std::string empty_plot(const Plot& plot) {
-  std::string text = "set label 'no data' at graph 0.5, graph 0.5 center\n";
-  for (const auto& [which, axis] : {std::pair{"x", plot.x}, std::pair{"y", plot.y}})
-    text += std::string("set ") + which + (axis.logarithmic ? "range [1:10]\n" : "range [0:1]\n");
-  return text + "plot NaN notitle\n";
+constexpr const char* kEmptyPlot = "set label 'no data' at graph 0.5, graph 0.5 center\nplot NaN notitle\n";
+
+bool any_samples(const Plot& plot) {
+  return std::any_of(plot.series.begin(), plot.series.end(),
+                     [](const PlotSeries& series) { return !series.samples.empty(); });
 }
 
 }  // namespace
 
 std::string plot_csv(const Plot& plot) {
+  const bool samples = any_samples(plot);
   std::string csv = "series," + csv_text(with_unit(plot.x, " [", "]")) + "," +
-                    csv_text(with_unit(plot.y, " [", "]")) + "\n";
+                    csv_text(with_unit(plot.y, " [", "]")) + (samples ? ",samples\n" : "\n");
   for (const PlotSeries& series : plot.series)
-    for (const PlotPoint& p : series.points)
-      csv += csv_text(series.name) + "," + csv_number(p.x) + "," + csv_number(p.y) + "\n";
+    for (std::size_t i = 0; i < series.points.size(); ++i) {
+      csv +=
+          csv_text(series.name) + "," + csv_number(series.points[i].x) + "," + csv_number(series.points[i].y);
+      if (samples) csv += "," + (series.samples.empty() ? "" : std::to_string(series.samples[i]));
+      csv += "\n";
+    }
   return csv;
 }
 
 std::string plot_script(const Plot& plot, const PlotFiles& files) {
   TALISMAN_CHECK(files.width_px >= 100 && files.width_px <= 10000);
   TALISMAN_CHECK(files.height_px >= 100 && files.height_px <= 10000);
+  const PlotLayout layout = plot_layout(plot, files);
+  const std::vector<Look> looks = looks_of(plot);
+  const layers::RectI& area = layout.area_px;
+  // The title stands over the middle of the axes, the names of the legend behind a sign.
+  const double title_px =
+      area.x0 + area.x1 < files.width_px ? area.x0 + area.x1 : 2 * files.width_px - area.x0 - area.x1;
+  const double name_px = files.width_px - area.x1 - kLegendSign_px;
   std::string script =
       "set encoding utf8\nset terminal svg noenhanced font 'Helvetica,14' background rgb 'white' size " +
       std::to_string(files.width_px) + "," + std::to_string(files.height_px) + "\n";
   script +=
       "set border 3 linecolor rgb '#404040'\nset tics nomirror\nset grid linecolor rgb '#b0b0b0' linewidth "
       "0.5\n";
-  script += "set key outside right top Left reverse\nset title " + quoted(plot.title) + "\n";
-  script += axis_words("x", plot.x) + axis_words("y", plot.y);
+  script += "set key outside right top Left reverse samplen 3\nset title " +
+            quoted(fitted_text(plot.title, kTextFont_px, title_px)) + "\n";
+  script += margin_words(area, files) +
+            axis_words("x", plot.x, layout.x, area.width(), area.width() / kTic_px) +
+            axis_words("y", plot.y, layout.y, area.height(), area.height() / kTic_px);
   std::string curves;
   for (std::size_t i = 0; i < plot.series.size(); ++i) {
-    if (!anything_drawable(plot.series[i], plot)) continue;
-    TALISMAN_CHECK(plot.series[i].labels.empty() ||
-                   plot.series[i].labels.size() == plot.series[i].points.size());
-    script += data_block(plot.series[i], plot, i) + label_words(plot.series[i], plot, i);
-    curves += (curves.empty() ? "plot " : ", \\\n     ") + curve(plot.series[i], i);
+    const PlotSeries& series = plot.series[i];
+    TALISMAN_CHECK(series.labels.empty() || series.labels.size() == series.points.size());
+    TALISMAN_CHECK(series.samples.empty() || series.samples.size() == series.points.size());
+    if (!anything_drawable(series, plot)) continue;
+    script += data_block(series, plot, i);
+    curves += (curves.empty() ? "plot " : ", \\\n     ") +
+              curve(series, looks[i], i, fitted_text(series.name, kTextFont_px, name_px));
   }
-  return script + (curves.empty() ? empty_plot(plot) : curves + "\n");
+  if (curves.empty()) return script + kEmptyPlot;
+  script += label_words(layout, looks, files);
+  add_hollow_points(plot, script, curves);
+  return script + curves + "\n";
 }
 
 void write_plot(const std::string& dir, const std::string& name, const Plot& plot, const PlotFiles& files) {

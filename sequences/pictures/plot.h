@@ -2,10 +2,13 @@
 #pragma once
 
 /// Curves as pictures, with the numbers beside them: NAME.svg drawn by gnuplot, and NAME.csv, one line per
-/// point (`series,x,y`; the header names quantity and unit).
+/// point (`series,x,y`; the header names quantity and unit; `samples` as a fourth column where a series has
+/// them).
 ///
-/// Colours are those of Okabe and Ito (told apart by colour-blind readers); markers differ too, for grey
-/// print.
+/// The first seven colours are those of Okabe and Ito (told apart by colour-blind readers), five more follow;
+/// no two of the first twelve series share one. Later ones, and those that ask for the colour of another,
+/// differ in their dashes. Markers differ too, for grey print: no two series have one colour and one marker.
+/// A point of few samples is hollow. Labels do not lie over each other (plot_layout.h).
 
 #include <string>
 #include <vector>
@@ -27,8 +30,13 @@ struct PlotSeries {
   std::vector<PlotPoint> points;
   SeriesStyle style = SeriesStyle::LinePoints;
   std::vector<std::string> labels =
-      {};  ///< written beside the points, one for each; empty: none. Not in the CSV
+      {};                         ///< written beside the points, one for each; empty: none. Not in the CSV
+  std::vector<int> samples = {};  ///< of how many each point is, one for each; empty: not told
+  int color = -1;  ///< ≥ 0: that of the series of this index; else one of its own, while there are some
 };
+
+/// Points of fewer samples than this are hollow.
+inline constexpr int kFewSamples = 10;
 
 struct PlotAxis {
   std::string label;  ///< quantity: "update rate"

@@ -290,7 +290,9 @@ void finish_geometric(const Pipeline& pipeline, const LayerTable& layers, const 
                       fiducials::Report& report) {
   report.geometric.where_px =
       glm::clamp(report.geometric.where_px, layers::dvec2(0), layers::dvec2(now.view.display_px));
-  if (report.shade.px > 0 && report.geometric.px > pipeline.settings.regulator.thresholds.geometric_px)
+  const double most_px = pipeline.settings.regulator.thresholds.geometric_px /
+                         layers[now.layer].preferences.importance.geometric;
+  if (report.shade.px > 0 && report.geometric.px > most_px)
     report.shade.what = shade_in_words(pipeline, layers, now, report.shade);
 }
 
@@ -319,7 +321,7 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
   if (assessment.preferences.whole_extents)
     assessment.fiducials.sampling.magnification /= placement.density_kept;
   if (is_blurred(assessment.preferences)) judge_motion_blur(layers, then, now, assessment);
-  assess_light_and_faces(pipeline, layers.bound(now.layer), then, now, assessment.fiducials);
+  assess_light_and_faces(pipeline, layers, then, now, assessment.fiducials);
   for (std::size_t i = 0; i < matched.then_px.size(); ++i)
     assessment.held_geometric_px =
         std::max(assessment.held_geometric_px, glm::distance(matched.then_px[i], matched.now_px[i]));

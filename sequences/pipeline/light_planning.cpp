@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/pipeline/light_planning.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
 #include "fiducials/photometric.h"
 #include "fiducials/shade_drift.h"
+#include "fiducials/shade_strength.h"
 #include "fiducials/turned_faces.h"
 #include "layers/animation.h"
 #include "layers/built_effects.h"
 #include "layers/light_change.h"
+#include "layers/shading.h"
 
 namespace talisman::sequences {
 
@@ -22,6 +29,39 @@ std::string light_in_words(const layers::Scene& scene, int light) {
   return name.empty() ? "light " + std::to_string(light) : "light '" + name + "'";
 }
 
+/// Do textures that the layer holds fade into each other over time?
+bool blends_vary(const layers::Scene& scene, const layers::Layer& layer) {
+  return layer.is_aggregate() && layers::is_built(layers::Effect::TextureLayers) &&
+         layers::any_part(scene, layer, layers::has_second_texture);
+}
+
+/// Of the factors of a member's textures, in all.
+double change_of_blends(const layers::LayerSet& set, const layers::Layer& aggregate, double then_s,
+                        double now_s) {
+  double largest = 0;
+  for (const int member : aggregate.members) {
+    double change = 0;
+    for (std::size_t k = static_cast<std::size_t>(member); k < set.layers.size(); ++k) {
+      const layers::Layer& held = set.layers[k];
+      if (held.id != member && held.base != member) break;
+      const bool is_texture = held.id == member || held.kind == layers::LayerKind::Texture;
+      if (is_texture && !held.gain.values.empty())
+        change += std::fabs(layers::value_at(held.gain, now_s) - layers::value_at(held.gain, then_s));
+    }
+    largest = std::max(largest, change);
+  }
+  return largest;
+}
+
+void add_change_of_blends(const LayerTable& layers, const layers::LayerState& then,
+                          const layers::LayerState& now, fiducials::Photometric& photometric) {
+  const layers::Layer& layer = layers[static_cast<std::size_t>(now.layer)];
+  const double change = change_of_blends(layers.set(), layer, then.time_s, now.time_s);
+  double brightest = 0;
+  for (const layers::dvec3& color : now.point_colors) brightest = std::max(brightest, glm::length(color));
+  photometric.color += change * brightest;
+}
+
 }  // namespace
 
 layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const layers::Layer& layer,
@@ -33,23 +73,31 @@ layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const lay
   if (!regulator::follows_light(options)) return bound;
   bound.surface_why_not = "a shade layer follows where its term lies";
   const bool is_light = layer.kind == layers::LayerKind::Light;
-  if (layer.base >= 0 && !is_light) return bound;
+  const bool is_shadow = layer.kind == layers::LayerKind::Shadow;
+  if (layer.base >= 0 && !is_light && !is_shadow) return bound;
   const layers::LightChange change = layers::light_change_of(pipeline.scene, layer, pipeline.moving_carriers);
   bound.surface_why_not = change.why_not;
-  if (!layers::is_built(layers::Effect::ColorWarp) || !change.possible()) return bound;
+  if (!layers::is_built(layers::Effect::ColorWarp)) return bound;
+  if (!change.possible() && !blends_vary(pipeline.scene, layer)) return bound;
   bound.surface = layers::mean_surface(pipeline.scene, layer);
   if (is_light) bound.surface->constant = layers::dvec3(0.0);
-  layers::add_light_samples(pipeline.scene, pipeline.settings.material_points, bound);
+  if (!is_shadow)  // which has the points of its base
+    layers::add_light_samples(pipeline.scene, pipeline.settings.material_points, bound);
   if (layer.factored.specular) bound.surface->specular = layers::dvec3(0.0);  // in a sprite of its own
   return bound;
 }
 
-void assess_light_and_faces(const Pipeline& pipeline, const layers::LayerBound& bound,
+void assess_light_and_faces(const Pipeline& pipeline, const LayerTable& layers,
                             const layers::LayerState& then, const layers::LayerState& now,
                             fiducials::Report& report) {
-  report.photometric =
-      fiducials::photometric_of(then, now, bound, {.color_warp = pipeline.settings.regulator.color_warp});
+  const layers::Layer& layer = layers[static_cast<std::size_t>(now.layer)];
+  const layers::LayerBound& bound = layers.bound(static_cast<std::size_t>(now.layer));
+  report.photometric = layer.kind == layers::LayerKind::Shadow
+                           ? fiducials::shade_strength_of(then, now, bound, layer)
+                           : fiducials::photometric_of(
+                                 then, now, bound, {.color_warp = pipeline.settings.regulator.color_warp});
   if (report.photometric.computed) {
+    if (layer.is_aggregate()) add_change_of_blends(layers, then, now, report.photometric);
     name(pipeline.scene, report.photometric.color_light);
     name(pipeline.scene, report.photometric.angle_light);
   }

@@ -104,14 +104,15 @@ void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameRe
     const chunker::Frame shown = shown_alone(*old, sprite.screen_from_sprite, sprite.multipliers,
                                              report.layers[sprite.layer], display_px);
     const chunker::Frame fresh = fresh_alone(pipeline, state, report, sprite.layer, prepared);
-    const ApparentShift seen = apparent_shift(shown, fresh, decision.shown_geometric_px);
-    const fiducials::Photometric& light = report.assessments[sprite.layer].fiducials.photometric;
+    const fiducials::Photometric& photometric = report.assessments[sprite.layer].fiducials.photometric;
+    const double light = photometric.computed ? photometric.color : 0;
+    const ApparentShift seen = apparent_shift(shown, fresh, {decision.shown_geometric_px, light});
     Pictures pictures;
     if (seen.seen.width > 0) pictures = {over_grey(shown, seen.seen), over_grey(fresh, seen.seen)};
     AuditedReuse reuse{report.frame,
                        sprite.age_frames,
                        decision.shown_geometric_px,
-                       light.computed ? light.color : 0,
+                       light,
                        seen.p95_px,
                        seen.rms,
                        seen.missing,

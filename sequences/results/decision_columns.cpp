@@ -117,6 +117,10 @@ DecisionColumns geometric_columns() {
           "error that the old sprite would have with the warp, also when that was rejected; `shade_px` is "
           "part of it",
           [](const Row& r) { return fiducials_of(r).geometric.px; }),
+      computed<Row>("geometric_weight", "fiducials/geometric_weight", "",
+                    "the layer's importance of that error: its threshold is `geometric_px` of the settings "
+                    "divided by it",
+                    [](const Row& r) { return assessment(r).preferences.importance.geometric; }),
       computed<Row>("held_geometric_px", "fiducials/held_geometric_px", "px",
                     "error that the old sprite would have where it was, without a warp",
                     [](const Row& r) { return assessment(r).held_geometric_px; }),

@@ -66,11 +66,20 @@ bool is_off(Off off, double limit) {
   return (off == Off::AtZero && limit == 0) || (off == Off::BelowZero && limit < 0);
 }
 
+/// The layer's own limit: that of the settings, for displacements divided by their weight.
+Json limit_of(const FiducialRow& row, const Json& line, const Json& settings) {
+  const Json& limit = settings.at(row.limit);
+  const Json* weight =
+      std::string(row.limit) == "geometric_px" ? at(line, "/fiducials/geometric_weight") : nullptr;
+  if (!weight || !limit.is_number()) return limit;
+  return limit.get<double>() / weight->get<double>();
+}
+
 FiducialFinding finding_of(const FiducialRow& row, const Json& line, const Json& settings) {
   FiducialFinding finding{row.name, row.limit, {}, row.unit, {}, {}, {}, false};
   const Json* value = at(line, row.value);
   if (value) finding.value = value->dump();
-  const Json& limit = settings.at(row.limit);
+  const Json limit = limit_of(row, line, settings);
   if (has_limits(settings) && limit.is_number() && !is_off(row.off, limit.get<double>()))
     finding.limit = limit.dump();
   if (value && !finding.limit.empty()) {

@@ -66,6 +66,13 @@ bool is_flip(const Sequence& sequence, const Settings& settings, const std::vect
   });
 }
 
+/// By which the layer divides the setting.
+double weight_of(const FiducialFinding& finding, const LayerHistory& layer) {
+  const nlohmann::ordered_json::json_pointer weight("/fiducials/geometric_weight");
+  if (finding.setting != "geometric_px" || !layer.line.contains(weight)) return 1;
+  return layer.line.at(weight).get<double>();
+}
+
 }  // namespace
 
 FlipThreshold flip_threshold_of(const Sequence& sequence, const Settings& settings,
@@ -77,7 +84,8 @@ FlipThreshold flip_threshold_of(const Sequence& sequence, const Settings& settin
   for (const FiducialFinding& finding : findings_of(layer.line, json_of(settings))) {
     if (finding.setting.empty() || finding.limit.empty() || finding.value.empty()) continue;
     const bool decides = flip.was_drawn ? finding.is_beyond : finding.setting == "geometric_px";
-    if (decides) flip.limits.push_back({finding.setting, std::stod(finding.value)});
+    if (decides)
+      flip.limits.push_back({finding.setting, weight_of(finding, layer) * std::stod(finding.value)});
   }
   const auto has_room = [](const FlipLimit& limit) { return limit.at > 0; };
   if (!std::all_of(flip.limits.begin(), flip.limits.end(), has_room)) flip.limits.clear();

@@ -14,8 +14,18 @@ namespace {
 void make_visible(chunker::Frame& frame, const layers::Layer& layer) {
   if (layer.kind == layers::LayerKind::Light)
     for (chunker::Linear16& p : frame.pixels) p.a = std::max({p.r, p.g, p.b});
-  if (layer.kind == layers::LayerKind::Shadow && layer.light >= 0)
+  if (layer.kind != layers::LayerKind::Shadow) return;
+  const bool is_ratio = layer.light < 0;
+  if (!is_ratio)
     for (chunker::Linear16& p : frame.pixels) p.r = p.g = p.b = p.a;
+  if (!is_ratio) return;
+  for (chunker::Linear16& p : frame.pixels) {
+    const auto taken = [&](std::uint16_t left) {
+      return static_cast<std::uint16_t>(p.a - std::min(left, p.a));
+    };
+    p = {taken(p.r), taken(p.g), taken(p.b), 0};
+    p.a = std::max({p.r, p.g, p.b});
+  }
 }
 
 }  // namespace

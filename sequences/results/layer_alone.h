@@ -13,7 +13,8 @@
 namespace talisman::sequences {
 
 /// The sprite alone, over nothing. A Light layer, which covers nothing, covers as much as it gives of the brightest channel;
-/// the Shadow layer of one light, which is black, is white. So both are seen by themselves.
+/// the Shadow layer of one light, which is black, is white; that of all lights, which is what is left of them, is what
+/// it takes away. So all are seen by themselves.
 chunker::Frame shown_alone(const chunker::Sprite& sprite, const layers::dmat3& screen_from_sprite,
                            const SpriteMultipliers& multipliers, const layers::Layer& layer,
                            layers::ivec2 display_px);

@@ -40,9 +40,9 @@ Image8 with_outlines(const FrameReport& report) {
   std::vector<Outline> outlines;
   for (const ShownSprite& sprite : report.shown)
     outlines.push_back({sprite.screen_from_sprite, sprite.size_px, sprite.age_frames,
-                        report.layers[sprite.layer].name + " " + std::to_string(sprite.age_frames)});
+                        outline_label(report.layers[sprite.layer].name, sprite.age_frames), sprite.layer});
   Image8 image = to_image8(report.picture);
-  draw_outlines(image, outlines);
+  draw_overlay(image, outlines);
   return image;
 }
 

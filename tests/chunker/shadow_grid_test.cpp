@@ -115,6 +115,39 @@ TEST(ShadowGrid, ShadowOfWhatRestsRests) {
   EXPECT_LE(grown, 5);
 }
 
+// The same from a lamp in a place, whose one map looks at both: the ball creeps away, and the shadow of the cube
+// changes only where the direction or the width of the view passes a step.
+TEST(ShadowGrid, ShadowOfWhatRestsRestsUnderALampToo) {
+  const auto map_at = [](double ball_x) {
+    ShadeScene shaded;
+    shaded.scene.nodes[ShadeScene::kBall].local.translation.x = ball_x;
+    layers::SceneFrame frame = shaded.scene.at(0);
+    layers::LightState& lamp = frame.lights[ShadeScene::kSpot];
+    lamp.kind = layers::Light::Kind::Point;
+    lamp.position = {0.3, 6, 0.2};
+    const std::vector<int> casters{ShadeScene::kCube, ShadeScene::kBall};
+    return make_shadow_map(frame, ShadeScene::kSpot, casters, sharp(128));
+  };
+  const auto shadow_of_cube = [](const ShadowMap& map) {
+    std::vector<float> values;
+    for (double x = -1.2; x < 0.4; x += 0.013)
+      for (double z = -1; z < 0.6; z += 0.017) values.push_back(map.visibility({x, 0.01, z}));
+    return values;
+  };
+  ShadowMap before = map_at(1.5);
+  ASSERT_EQ(before.faces().size(), 1u);
+  std::vector<float> values = shadow_of_cube(before);
+  EXPECT_GT(std::count(values.begin(), values.end(), 0.0f), 500);
+  int changed = 0;
+  for (int frame = 1; frame <= 40; ++frame) {
+    const ShadowMap now = map_at(1.5 + frame * 0.01);
+    const std::vector<float> next = shadow_of_cube(now);
+    changed += next != values;
+    values = next;
+  }
+  EXPECT_LE(changed, 4);
+}
+
 // What fits is shown, in no more than a step of texels too many, at every size of the scene and of the map.
 TEST(OrthographicView, ShowsTheCastersWithLittleToSpare) {
   const LightAxes axes = axes_along(glm::normalize(dvec3(0.3, -1, 0.2)));
@@ -127,6 +160,18 @@ TEST(OrthographicView, ShowsTheCastersWithLittleToSpare) {
       EXPECT_GE(lo.x / t - first_x, -1e-6) << side << " " << resolution;
       EXPECT_LE(hi.x / t - first_x, resolution + 1e-6) << side << " " << resolution;
       EXPECT_GE((hi.x - lo.x) / t, 0.87 * (resolution > 4 ? resolution - 2 : resolution / 2.0) - 1e-6);
+    }
+}
+
+// All casters are before the lamp and inside its map, at every size, whatever the rounding of the direction.
+TEST(SteadyDirection, IsNearAndOfUnitLength) {
+  for (double tan_half = 1e-6; tan_half < 2.75; tan_half *= 1.7)
+    for (const dvec3& d : {dvec3(1, 0, 0), dvec3(0.577, 0.577, -0.577), dvec3(-0.1, -0.99, 0.05)}) {
+      const dvec3 forward = glm::normalize(d), steady = steady_direction(forward, tan_half);
+      EXPECT_NEAR(glm::length(steady), 1, 1e-12);
+      // Half a step in each of three coordinates, a step being an eighth of at most 1.13 of the width.
+      EXPECT_LE(glm::distance(steady, forward), 1.13 / 8 * std::sqrt(3.0) * std::max(tan_half, 1e-4))
+          << tan_half;
     }
 }
 

@@ -61,6 +61,21 @@ TEST(ViolationOf, ZeroSwitchesPhotometryOffAndNotComputedNeverViolates) {
   EXPECT_EQ(violation_of(unlit, off), "");
 }
 
+// Twice as important is half as far off; a weight of 0 leaves displacements alone.
+TEST(ViolationOf, DisplacementCountsByItsWeight) {
+  LayerAssessment layer = lit_layer(0);
+  layer.fiducials.geometric.px = 3;
+  EXPECT_EQ(violation_of(layer, {}), "");
+  layer.preferences.importance.geometric = 2;
+  EXPECT_EQ(violation_of(layer, {}), "geometric 3 > 2 px");
+  layer.fiducials.geometric.px = 1e6;
+  layer.preferences.importance.geometric = 0;
+  EXPECT_EQ(violation_of(layer, {}), "");
+  RegulatorOptions nothing;
+  nothing.thresholds.geometric_px = 0;
+  EXPECT_NE(violation_of(layer, nothing), "") << "0 px reuses only what is identical, whatever the weight";
+}
+
 TEST(ViolationOf, NaNIsAViolation) { EXPECT_NE(violation_of(lit_layer(std::nan("")), {}), ""); }
 
 TEST(ViolationOf, TurnedSidesAreRegulatedOnlyWhereTheyAreAskedFor) {

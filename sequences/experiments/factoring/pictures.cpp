@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include "sequences/experiments/statistics.h"
@@ -148,9 +149,12 @@ Plot prediction_plot(const FactoringReport& report) {
   PlotSeries equal{"measured = predicted", {}, SeriesStyle::Line, {}};
   for (const auto& [bins, values] : points)
     some.points.push_back({bins.first * bin_percent, bins.second * bin_percent});
-  for (const auto& [bin, sum] : measured)
+  for (const auto& [bin, sum] : measured) {
     mean.points.push_back(
         {bin * bin_percent, 100.0 / kCellsOfWhite * sum.second / static_cast<double>(sum.first)});
+    mean.samples.push_back(
+        static_cast<int>(std::min<std::int64_t>(sum.first, std::numeric_limits<int>::max())));
+  }
   if (!measured.empty())
     for (const int end : {measured.begin()->first, measured.rbegin()->first})
       equal.points.push_back({end * bin_percent, end * bin_percent});

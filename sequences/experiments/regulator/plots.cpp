@@ -25,7 +25,12 @@ std::vector<double> column(const RegulatorReport& report, Quantity quantity) {
 /// The settings of one plot: where each one lies, in the plot's units.
 struct Scatter {
   std::vector<double> x, y;
+  int samples = 0;  ///< pictures that y is a mean of; 0: not of pictures
 };
+
+int pictures_of(const RegulatorReport& report) {
+  return static_cast<int>(sampled_frames(report.frames).size());
+}
 
 PlotSeries series_of(const RegulatorReport& report, const Scatter& at, const std::string& name) {
   PlotSeries series{name, {}, SeriesStyle::LinePoints, {}};
@@ -35,6 +40,7 @@ PlotSeries series_of(const RegulatorReport& report, const Scatter& at, const std
     // The thresholds of lookahead and oracle are those of the policy threshold, and lie close to it.
     const bool repeated = report.settings[k].setting.unit == "px" && name != "threshold";
     series.labels.push_back(repeated ? "" : report.settings[k].setting.knob());
+    if (at.samples > 0) series.samples.push_back(at.samples);
   }
   return series;
 }
@@ -83,7 +89,7 @@ Plot time_plot(const RegulatorReport& report) {
             {"FLIP against reference: less is better", "", true},
             {}};
   const Scatter at{column(report, [](const SettingResult& r) { return r.frame_ms(); }),
-                   column(report, flip_of)};
+                   column(report, flip_of), pictures_of(report)};
   add_series(plot, report, at, front_of(at));
   return plot;
 }
@@ -93,7 +99,7 @@ Plot polygon_plot(const RegulatorReport& report) {
             polygon_axis(),
             {"FLIP against reference: less is better", "", true},
             {}};
-  const Scatter at{polygon_shares(report), column(report, flip_of)};
+  const Scatter at{polygon_shares(report), column(report, flip_of), pictures_of(report)};
   add_series(plot, report, at, front_of(at));
   return plot;
 }
@@ -105,7 +111,7 @@ Plot bound_plot(const RegulatorReport& report) {
       {"largest geometric error displayed", "px", true},
       {}};
   const Scatter at{column(report, [](const SettingResult& r) { return 100 * r.mean_update_rate; }),
-                   column(report, [](const SettingResult& r) { return r.max_geometric_px; })};
+                   column(report, [](const SettingResult& r) { return r.max_geometric_px; }), 0};
   add_series(plot, report, at, front_of(at));
   return plot;
 }
@@ -116,7 +122,7 @@ Plot popping_plot(const RegulatorReport& report) {
             {"popping, RMS: less is better", "code values", true},
             {}};
   const Scatter at{polygon_shares(report),
-                   column(report, [](const SettingResult& r) { return r.popping.rms; })};
+                   column(report, [](const SettingResult& r) { return r.popping.rms; }), pictures_of(report)};
   add_series(plot, report, at, front_of(at));
   return plot;
 }
@@ -162,6 +168,7 @@ Plot calibration_plot(const RegulatorReport& report, std::size_t index) {
   for (const CalibrationBin& bin : summary.bins) {
     median.points.push_back({bin.center, bin.median_error});
     median.labels.push_back(fixed(bin.median_error, 1));
+    median.samples.push_back(bin.samples);
     lower.points.push_back({bin.center, bin.lower_error});
     upper.points.push_back({bin.center, bin.upper_error});
   }

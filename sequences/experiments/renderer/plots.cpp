@@ -34,12 +34,18 @@ PlotAxis flip_axis(bool in_sprites) {
           "", true};
 }
 
+/// What a mean is of: "stage, 2 frames".
+std::string drawn_from(const RendererReport& report, std::size_t frames) {
+  return " (" + report.sequence + ", " + std::to_string(frames) + (frames == 1 ? " frame)" : " frames)");
+}
+
 const char* means(bool in_sprites) { return in_sprites ? "knobs of sprites" : "knobs of the one pass"; }
 
 }  // namespace
 
 Plot knob_time_plot(const RendererReport& report, bool in_sprites) {
-  const Plot plot{std::string(means(in_sprites)) + ": picture error against time (" + report.sequence + ")",
+  const Plot plot{std::string(means(in_sprites)) + ": picture error against time" +
+                      drawn_from(report, report.knobs.frames.size()),
                   {"measured processor time per frame", "ms", false},
                   flip_axis(in_sprites),
                   {}};
@@ -49,7 +55,8 @@ Plot knob_time_plot(const RendererReport& report, bool in_sprites) {
 }
 
 Plot knob_work_plot(const RendererReport& report, bool in_sprites) {
-  const Plot plot{std::string(means(in_sprites)) + ": picture error against work (" + report.sequence + ")",
+  const Plot plot{std::string(means(in_sprites)) + ": picture error against work" +
+                      drawn_from(report, report.knobs.frames.size()),
                   {"the count that the knob is paid in, of its last rung", "%", true},
                   flip_axis(in_sprites),
                   {}};
@@ -59,7 +66,8 @@ Plot knob_work_plot(const RendererReport& report, bool in_sprites) {
 }
 
 Plot effect_plot(const RendererReport& report) {
-  Plot plot{"effects of a frame: what each one costs and buys (" + report.sequence + ")",
+  Plot plot{"effects of a frame: what each one costs and buys" +
+                drawn_from(report, report.effects.frame_load.frames.size()),
             {"cost: measured processor time with - without, per frame", "ms", false},
             {"gain: FLIP of the picture without it", "", true},
             {}};
@@ -73,7 +81,8 @@ Plot effect_plot(const RendererReport& report) {
 }
 
 Plot run_plot(const RendererReport& report) {
-  Plot plot{"effects over time: time against error, without each (" + report.sequence + ")",
+  Plot plot{"effects over time: time against error, without each" +
+                drawn_from(report, report.effects.run_load.frames.size()),
             {"measured processor time per frame", "ms", false},
             {"FLIP against its direct: less is better", "", true},
             {}};

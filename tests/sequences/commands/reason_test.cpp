@@ -165,8 +165,8 @@ TEST_F(Reasons, ShadowsOfAllLightsAreNamedAsSuch) {
 
 // A light layer has no alpha, and a shadow is black over black: both are made visible before they are compared.
 TEST_F(Reasons, AuditSeesLightAndShadowLayers) {
-  for (const char* as : {"light", "shade"}) {
-    std::string text = kPassing;
+  for (const char* as : {"light", "shade", "multiply", "atop"}) {
+    std::string text = std::string("compositor: extended\n") + kPassing;
     text.replace(text.find("shadows: {}"), 11, std::string("shadows: {as: ") + as + "}");
     write("held.yaml", text);
     const Outcome outcome =

@@ -85,7 +85,8 @@ TEST(GltfTangents, WithoutADirectionAreReplacedAndSaidOnce) {
 TEST(GltfTangents, OfAnotherLengthAreRefused) {
   Gltf file = bumpy();
   file.primitive()["attributes"]["TANGENT"] = file.add<float>({1, 0, 0, 1}, 5126, "VEC4");
-  EXPECT_THAT(file.refusal(), HasSubstr("TANGENT has 1 elements, rule: as many as positions, 4"));
+  EXPECT_THAT(file.refusal(),
+              HasSubstr("TANGENT of mesh 'sheet' has 1 elements, rule: as many as POSITION, 4"));
 }
 
 TEST(GltfTangents, NoCoordinatesNoMapAndItIsSaid) {

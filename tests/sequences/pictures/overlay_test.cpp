@@ -201,6 +201,91 @@ TEST(DrawOutlines, MoreLabelsThanRoom) {
   EXPECT_GT(changed_pixels(image), 100);
 }
 
+/// Upper left corner of what a labelled picture has and the same without labels has not.
+layers::ivec2 label_corner(Outline outline, int width, int height) {
+  const Image8 with = drawn(outline, width, height);
+  outline.label.clear();
+  const Image8 without = drawn(outline, width, height);
+  layers::ivec2 corner(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      if (pixel_at(with, x, y) != pixel_at(without, x, y))
+        corner = {std::min(corner.x, x), std::min(corner.y, y)};
+  return corner;
+}
+
+// A box that leaves the picture over every border, by a pixel a frame: the label keeps up, and jumps nowhere.
+TEST(DrawOutlines, LabelsDoNotJump) {
+  for (const layers::dvec2 step : {layers::dvec2{1, 0}, layers::dvec2{-1, 0}, layers::dvec2{0, 1},
+                                   layers::dvec2{0, -1}, layers::dvec2{-1, -1}, layers::dvec2{1, 1}}) {
+    layers::ivec2 before(-1, -1);
+    for (int frame = 0; frame < 120; ++frame) {
+      const Outline outline{shift(70 + frame * step.x, 50 + frame * step.y), {60, 40}, 0, "leader"};
+      const layers::ivec2 at = label_corner(outline, 200, 150);
+      if (at.x == 200) break;  // out of view
+      if (frame > 0) {
+        EXPECT_LE(std::abs(at.x - before.x), 1) << frame;
+        EXPECT_LE(std::abs(at.y - before.y), 1) << frame;
+      }
+      before = at;
+    }
+  }
+}
+
+TEST(OutlineLabel, SaysTheAgeInFrames) {
+  EXPECT_EQ(outline_label("leader", 0), "leader · new");
+  EXPECT_EQ(outline_label("leader", 1), "leader · 1 frame");
+  EXPECT_EQ(outline_label("leader", 12), "leader · 12 frames");
+}
+
+TEST(DrawLegend, StandsInTheLowerLeftCornerAndShowsEveryColor) {
+  Image8 image = blank(512, 384);
+  draw_legend(image);
+  const auto place = legend_place(image);
+  ASSERT_TRUE(place);
+  EXPECT_EQ(place->x0, 0);
+  EXPECT_EQ(place->y1, 384);
+  for (int y = 0; y < image.height; ++y)
+    for (int x = 0; x < image.width; ++x)
+      if (x >= place->x1 || y < place->y0) {
+        ASSERT_EQ(pixel_at(image, x, y), kGround) << x << ", " << y;
+      }
+  for (const int age : {0, 1, 12, kOldestFrames}) {
+    int shown = 0;
+    for (int y = place->y0; y < place->y1; ++y)
+      for (int x = 0; x < place->x1; ++x) {
+        const Rgb a = pixel_at(image, x, y), b = age_color(age, kOldestFrames);
+        shown += std::abs(a[0] - b[0]) + std::abs(a[1] - b[1]) + std::abs(a[2] - b[2]) < 25;
+      }
+    EXPECT_GT(shown, 5) << age;
+  }
+}
+
+TEST(DrawLegend, SmallPicturesHaveNone) {
+  for (const auto& [width, height] : {std::pair{60, 40}, std::pair{320, 60}, std::pair{0, 0}}) {
+    Image8 image = blank(width, height);
+    EXPECT_FALSE(legend_place(image));
+    draw_legend(image);
+    EXPECT_EQ(changed_pixels(image), 0);
+  }
+  EXPECT_TRUE(legend_place(blank(320, 240)));
+}
+
+// Labels of boxes behind the legend stand beside it.
+TEST(DrawOverlay, LabelsAreClearOfTheLegend) {
+  const std::vector<Outline> outlines(5, {shift(5, 220), {100, 40}, 2, "leader · 2 frames"});
+  Image8 with = blank(320, 240), lines = blank(320, 240);
+  draw_overlay(with, outlines);
+  draw_outlines(lines, std::vector<Outline>(5, {shift(5, 220), {100, 40}, 2, ""}));
+  draw_legend(lines);
+  const auto place = legend_place(with);
+  ASSERT_TRUE(place);
+  for (int y = place->y0; y < place->y1; ++y)
+    for (int x = 0; x < place->x1; ++x)
+      ASSERT_EQ(pixel_at(with, x, y), pixel_at(lines, x, y)) << x << ", " << y;
+  EXPECT_GT(changed_pixels(with), changed_pixels(lines) + 5000);
+}
+
 TEST(DrawOutlinesDeathTest, OldestFramesMustBePositive) {
   Image8 image = blank(4, 4);
   EXPECT_DEATH(draw_outlines(image, {}, 0), "oldest_frames");

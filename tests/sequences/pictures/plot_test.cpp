@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -133,6 +134,74 @@ TEST_F(PlotFilesTest, MoreSeriesThanColors) {
     plot.series.push_back({"series " + std::to_string(i), {{1, 1.0 * i}, {2, 2.0 * i}}, SeriesStyle::Line});
   write_plot(dir_, "many", plot);
   EXPECT_THAT(content("many.svg"), HasSubstr("series 19"));
+}
+
+/// What follows `word` in each curve of the script.
+std::vector<std::string> of_curves(const std::string& script, const std::string& word) {
+  std::vector<std::string> found;
+  for (std::size_t at = script.find("plot $"); (at = script.find(word, at)) != std::string::npos;) {
+    at += word.size();
+    found.push_back(script.substr(at, script.find_first_of(" \n,", at) - at));
+  }
+  return found;
+}
+
+// 40 kinds of point: no two look alike, and the first twelve have twelve colours.
+TEST(PlotScript, NoTwoSeriesHaveOneColorAndOneMarker) {
+  Plot plot = sample();
+  plot.series.clear();
+  for (int i = 0; i < 40; ++i)
+    plot.series.push_back({"s" + std::to_string(i), {{1, 1.0 * i}}, SeriesStyle::Points});
+  const std::string script = plot_script(plot);
+  const auto colors = of_curves(script, "linecolor rgb "), markers = of_curves(script, "pointtype ");
+  ASSERT_EQ(colors.size(), 40u);
+  ASSERT_EQ(markers.size(), 40u);
+  EXPECT_EQ(std::set<std::string>(colors.begin(), colors.begin() + 12).size(), 12u);
+  std::set<std::pair<std::string, std::string>> looks;
+  for (std::size_t i = 0; i < colors.size(); ++i) looks.insert({colors[i], markers[i]});
+  EXPECT_EQ(looks.size(), 40u);
+}
+
+// The partner of a curve has its colour, its own marker, and is dashed.
+TEST(PlotScript, ASeriesMayAskForTheColorOfAnother) {
+  Plot plot = sample();
+  plot.series[1].style = SeriesStyle::LinePoints;
+  plot.series[1].color = 0;
+  const std::string script = plot_script(plot);
+  const auto colors = of_curves(script, "linecolor rgb "), markers = of_curves(script, "pointtype ");
+  EXPECT_EQ(colors[0], colors[1]);
+  EXPECT_NE(markers[0], markers[1]);
+  EXPECT_EQ(of_curves(script, "dashtype "), std::vector<std::string>{"2"});
+}
+
+// The mean of nine is hollow, that of ten is not; the file has the counts.
+TEST_F(PlotFilesTest, PointsOfFewSamplesAreHollowAndSaySo) {
+  Plot plot = sample();
+  plot.series[0].samples = {100, kFewSamples, kFewSamples - 1};
+  EXPECT_THAT(plot_script(plot), HasSubstr("$few << END_OF_DATA\n4 0.3333333333333333\nEND_OF_DATA\n"));
+  write_plot(dir_, "few", plot);
+  EXPECT_THAT(content("few.svg"), HasSubstr("hollow: fewer than 10 samples"));
+  EXPECT_THAT(content("few.csv"), HasSubstr("update rate [%],samples\naff_i,0.5,90,100\n"));
+  EXPECT_THAT(content("few.csv"), HasSubstr("\nhold,4,20,\n"));
+  plot.series[0].samples = {10, 10, 10};
+  EXPECT_THAT(plot_script(plot), Not(HasSubstr("hollow")));
+}
+
+// A title and a name of 300 letters stay inside the picture, cut with dots.
+TEST_F(PlotFilesTest, LongWordsAreCut) {
+  Plot plot = sample();
+  plot.title = plot.series[0].name = plot.x.label = plot.y.label = std::string(300, 'w');
+  write_plot(dir_, "long", plot);
+  EXPECT_THAT(content("long.svg"), HasSubstr("…"));
+  EXPECT_THAT(content("long.svg"), Not(HasSubstr(std::string(80, 'w'))));
+}
+
+TEST_F(PlotFilesTest, LabelsAreWrittenBesideTheirPoints) {
+  Plot plot = sample();
+  plot.series[0].labels = {"it's", "", "last"};
+  EXPECT_THAT(plot_script(plot), HasSubstr("set label 'it''s' at screen "));
+  write_plot(dir_, "labels", plot);
+  EXPECT_THAT(content("labels.svg"), HasSubstr("last"));
 }
 
 TEST_F(PlotFilesTest, FolderThatCannotBeWrittenIsNamed) {

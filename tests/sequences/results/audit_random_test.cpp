@@ -88,13 +88,16 @@ TEST(AuditRandom, CalibrationByShippedSequences) {
     }
 }
 
+/// Scenes that were drawn only after the thresholds were frozen.
+constexpr int kFirstSeed = 1000;
+
 /// By hand, TALISMAN_AUDIT_SCENES=500: the figures of docs/bound.md. In the suite 12 of them.
 TEST(AuditRandom, NearlyNoReuseIsWorseThanItsFiducialsSay) {
   const char* asked = std::getenv("TALISMAN_AUDIT_SCENES");
   const int scenes = asked ? std::atoi(asked) : 12;
   const tests::TemporaryFolder folder;
   Tally tally;
-  for (int seed = 0; seed < scenes; ++seed) {
+  for (int seed = kFirstSeed; seed < kFirstSeed + scenes; ++seed) {
     const Sequence sequence = tests::random_sequence(static_cast<std::uint32_t>(seed), folder.path());
     count("seed " + std::to_string(seed),
           audit_of_sequence(sequence, sequence.frames, tests::kCalibration, 1, folder.path()),

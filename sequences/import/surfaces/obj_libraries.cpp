@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/obj_libraries.h"
+#include "sequences/import/surfaces/obj_libraries.h"
 
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
 
 #include "sequences/files/quoted.h"
-#include "sequences/import/obj_text.h"
-#include "sequences/import/wide_text.h"
 
 namespace talisman::sequences {
-
-std::string rest_of_line(const std::string& line, std::size_t from) {
-  const std::size_t first = line.find_first_not_of(" \t", from), last = line.find_last_not_of(" \t\r");
-  return first == std::string::npos || last < first ? std::string() : line.substr(first, last - first + 1);
-}
 
 ObjLibraries::ObjLibraries(const ModelPlace& place, const std::vector<std::string>& written, FileUses& files)
     : place_(place), files_(files) {
@@ -37,20 +30,16 @@ void ObjLibraries::add_line(const std::string& names) {
   for (const std::string& name : absent) add_missing(name);
 }
 
-/// By the rules by which assimp, which reads it, finds it.
 bool ObjLibraries::add(const std::string& name) {
-  const std::string folder = std::filesystem::absolute(place_.path).parent_path().string();
-  const std::string found = find_file(place_, folder + "/" + name, files_);
+  const std::string found = find_file(place_, name, files_);
   if (found.empty()) return false;
-  lines_ += "mtllib " + name + "\n";
-  ObjText text(open_text(found));
-  std::istream in(&text);
-  for (std::string line; std::getline(in, line);) {
-    const std::size_t at = line.find_first_not_of(" \t");
-    if (at != std::string::npos && line.compare(at, 6, "newmtl") == 0)
-      materials_.insert(rest_of_line(line, at + 6));
-  }
+  materials_.merge(read_obj_materials(found));
   return true;
+}
+
+const ObjMaterial* ObjLibraries::find(const std::string& name) const {
+  const auto found = materials_.find(name);
+  return found == materials_.end() ? nullptr : &found->second;
 }
 
 void ObjLibraries::add_missing(const std::string& name) {
@@ -63,7 +52,7 @@ void ObjLibraries::add_missing(const std::string& name) {
 std::string ObjLibraries::unknown(const std::vector<std::string>& used) const {
   std::vector<std::string> names;
   for (const std::string& name : used)
-    if (!name.empty() && !materials_.contains(name)) names.push_back(name);
+    if (!name.empty() && !find(name)) names.push_back(name);
   if (names.empty()) return {};
   const bool is_one = names.size() == 1;
   return (is_one ? "material " : "materials ") + quoted(names) + (is_one ? " is" : " are") + " in no library";

@@ -5,12 +5,14 @@
 /// spaces, as exporters write it. A library that is missing and a material that is in none are losses: what is
 /// drawn instead is a plain grey.
 ///
-/// Where a library is missing, one with the model's own name (thing.mtl for thing.obj) takes its place.
+/// Where a library is missing, one with the model's own name (thing.mtl for thing.obj) takes its place. Of materials of
+/// one name in several libraries that of the first counts.
 
-#include <set>
+#include <map>
 #include <string>
 #include <vector>
 
+#include "sequences/import/surfaces/obj_materials.h"
 #include "sequences/import/texture_search.h"
 
 namespace talisman::sequences {
@@ -20,9 +22,9 @@ class ObjLibraries {
   /// `written`: what is behind each "mtllib".
   ObjLibraries(const ModelPlace& place, const std::vector<std::string>& written, FileUses& files);
 
-  /// "mtllib NAME" of each that is there.
-  const std::string& lines() const { return lines_; }
-  /// "material library 'gone.mtl' is missing", of each that is not.
+  /// Null where no library has it.
+  const ObjMaterial* find(const std::string& name) const;
+  /// "material library 'gone.mtl' is missing", of each that is not there.
   const std::vector<std::string>& missing() const { return missing_; }
   /// "material 'red' is in no library", of those among `used`; empty if there is none.
   std::string unknown(const std::vector<std::string>& used) const;
@@ -34,12 +36,8 @@ class ObjLibraries {
 
   const ModelPlace& place_;
   FileUses& files_;
-  std::string lines_;
   std::vector<std::string> missing_;
-  std::set<std::string> materials_;
+  std::map<std::string, ObjMaterial> materials_;
 };
-
-/// What is in `line` from there on, without the space around it.
-std::string rest_of_line(const std::string& line, std::size_t from);
 
 }  // namespace talisman::sequences

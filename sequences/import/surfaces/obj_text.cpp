@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/import/obj_text.h"
+#include "sequences/import/surfaces/obj_text.h"
 
 #include <algorithm>
 #include <utility>
@@ -21,6 +21,11 @@ bool is_of_numbers(const std::string& line, std::size_t at) {
 
 }  // namespace
 
+std::string rest_of_line(const std::string& line, std::size_t from) {
+  const std::size_t first = line.find_first_not_of(" \t", from), last = line.find_last_not_of(" \t\r");
+  return first == std::string::npos || last < first ? std::string() : line.substr(first, last - first + 1);
+}
+
 ObjText::ObjText(std::unique_ptr<std::istream> from, const std::string& before) : from_(std::move(from)) {
   if (before.empty()) return;
   text_ = before + "\n";
@@ -29,6 +34,14 @@ ObjText::ObjText(std::unique_ptr<std::istream> from, const std::string& before) 
 
 void ObjText::add_statement(const std::string& line) {
   const std::size_t at = line.find_first_not_of(" \t");
+  if (at != std::string::npos &&
+      (line.compare(at, 7, "usemtl ") == 0 || line.compare(at, 7, "usemtl\t") == 0)) {
+    std::string name = rest_of_line(line, at + 7);
+    std::replace(name.begin(), name.end(), ' ', kKeptSpace);
+    std::replace(name.begin(), name.end(), '\t', kKeptSpace);
+    text_ += "usemtl " + name + '\n';
+    return;
+  }
   const std::size_t comment = line.find('#');
   const bool is_face = at != std::string::npos && line.compare(at, 3, "fo ") == 0;
   if (is_face || (comment != std::string::npos && at < comment && is_of_numbers(line, at))) {

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// OBJ files, in a time that grows linearly with their length: tinyobjloader reads the geometry, in double. What a
-/// material of theirs means is asked of assimp, which reads a file of one triangle for each material that is used.
+/// OBJ files, in a time that grows linearly with their length: tinyobjloader reads the geometry, in double; materials:
+/// obj_materials.h.
 ///
 ///   parts     one per object or group and material; polygons are cut into triangles
 ///   places    far from the file's origin they are kept around a local one, which a node puts back
+///   sides     both are drawn: the format has no rule that hides one
 ///   normals   the file's; without any: the mean of the triangles around a point, of one smoothing group where the
 ///             file has groups (without a group: flat), else of all
 ///   colours   of vertices (v x y z r g b), in sRGB; where the file names no material they are meant alone
