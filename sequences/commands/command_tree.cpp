@@ -35,6 +35,8 @@ constexpr std::array kExamples{
              "talisman audit carousel --policy interpolate --hold 4 --every 1"},
     Examples{"explain", "talisman explain carousel --frame 17",
              "talisman explain out/carousel --frame 17 --layer 'horse 1'"},
+    Examples{"tune", "talisman tune carousel --flip 0.02 --frames 0-23 --size 160x120",
+             "talisman tune carousel --budget-ms 8"},
     Examples{"inspect", "talisman inspect carousel --order", "talisman inspect model.glb --parts"},
     Examples{"init", "talisman init model.glb > my.yaml", "talisman init model.glb --turntable 10 > my.yaml"},
     Examples{"diff", "talisman diff out/a/frames out/b/frames", "talisman diff a.png b.png --map out/map"},

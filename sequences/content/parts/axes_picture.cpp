@@ -110,6 +110,7 @@ Image8 axes_picture(const Sequence& sequence, int size_px) {
       bounds.lo = glm::min(bounds.lo, p);
       bounds.hi = glm::max(bounds.hi, p);
     }
+  if (bounds.empty()) bounds = {dvec3(-1), dvec3(1)};
   const dvec3 center = 0.5 * (bounds.lo + bounds.hi), half = 0.5 * (bounds.hi - bounds.lo);
   const Eye eye = eye_on(center, std::max(glm::length(half), 1e-9));
   Image8 image = picture_of(scene_before(sequence, eye), sequence.layer_specs, size_px);

@@ -355,5 +355,26 @@ TEST_F(Messages, ScriptsAnswerHelpWithoutBuildingAnything) {
   }
 }
 
+TEST_F(Messages, ScriptFetchesWhatItRuns) {
+  // A copy of the script between programs that only say what they are told.
+  std::filesystem::create_directories(folder_ / "sequences");
+  std::filesystem::create_directories(folder_ / "build/release/bin");
+  std::filesystem::copy_file(std::string(TALISMAN_SOURCE_DIR) + "/sequences/run", folder_ / "sequences/run");
+  write("setup", "#!/bin/sh\n");
+  write("cmake", "#!/bin/sh\n");
+  write("sequences/fetch-assets", "#!/bin/sh\necho fetch \"$@\"\n");
+  write("build/release/bin/talisman", "#!/bin/sh\necho talisman \"$@\"\n");
+  const auto said = [&](const std::string& arguments) {
+    return run_shell(
+               "chmod +x setup cmake sequences/* build/release/bin/* && PATH=\"$PWD:$PATH\" sequences/run " +
+               arguments)
+        .output;
+  };
+  EXPECT_EQ(said("warps --object vase"), "fetch warps\ntalisman warps --object vase\n");
+  EXPECT_EQ(said("warps"), "fetch warps\ntalisman warps\n");
+  EXPECT_EQ(said("carousel --policy hold"), "fetch carousel\ntalisman render carousel --policy hold\n");
+  EXPECT_EQ(said(""), "fetch canyon\ntalisman render canyon --policy threshold --geometric-px 4 --video\n");
+}
+
 }  // namespace
 }  // namespace talisman
