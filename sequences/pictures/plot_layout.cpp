@@ -96,7 +96,7 @@ bool continues_a_sign(unsigned char c) { return c >= 0x80 && c < 0xc0; }
 
 // --- Labels
 
-constexpr int kMarker_px = 5;      ///< half of a marker's box
+constexpr int kMarker_px = 6;      ///< half of a marker's box
 constexpr int kLabelGap_px = 2;    ///< around the letters
 constexpr double kJoined_px = 14;  ///< from here on a line leads to the point
 
