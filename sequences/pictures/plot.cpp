@@ -203,7 +203,7 @@ std::string label_words(const PlotLayout& layout, const std::vector<Look>& looks
 constexpr int kLegendGap_px = 10;  ///< between the axes and the legend
 constexpr int kTic_px = 60;        ///< of an axis for one number
 
-std::string short_number(double v) {
+std::string tic_text(double v) {
   std::array<char, 40> text;
   return {text.data(),
           std::to_chars(text.data(), text.data() + text.size(), v, std::chars_format::general, 6).ptr};
@@ -213,7 +213,7 @@ std::string tic_words(const char* which, const AxisRange& range, int most) {
   const AxisTics tics = logarithmic_tics(range, most);
   std::string text;
   for (const double v : tics.numbers)
-    text += (text.empty() ? "" : ", ") + quoted(short_number(v)) + " " + number(v);
+    text += (text.empty() ? "" : ", ") + quoted(tic_text(v)) + " " + number(v);
   for (const double v : tics.plain)
     if (std::find(tics.numbers.begin(), tics.numbers.end(), v) == tics.numbers.end())
       text += std::string(text.empty() ? "" : ", ") + "'' " + number(v) + " 1";
