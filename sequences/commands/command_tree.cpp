@@ -11,6 +11,7 @@
 #include "sequences/commands/option_group.h"
 #include "sequences/commands/render.h"
 #include "sequences/commands/run_words.h"
+#include "sequences/commands/split.h"
 #include "sequences/commands/version.h"
 #include "sequences/commands/words.h"
 
@@ -86,7 +87,13 @@ void CommandTree::add_runs(const std::atomic<bool>& stop) {
 
   CLI::App* plan = app_.add_subcommand("plan", "the same decisions and costs, without pixels");
   add_run_options(*plan, line_);
-  plan->callback([this, &stop] { exit_code_ = run_sequence(line_, true, stop, std::cout); });
+  OptionGroup(*plan, "What if")
+      .option("--split", split_,
+              "name of a layer: plan again with each of its parts as a layer of its own, and print both");
+  plan->callback([this, &stop] {
+    exit_code_ =
+        split_.empty() ? run_sequence(line_, true, stop, std::cout) : run_split(line_, split_, std::cout);
+  });
 
   CLI::App* audit =
       app_.add_subcommand("audit", "were the fiducials right? Reused sprites are drawn fresh beside them");

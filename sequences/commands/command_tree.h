@@ -46,6 +46,7 @@ class CommandTree {
 
   CLI::App app_;
   CommandLine line_;
+  std::string split_;
   ExplainOptions explain_;
   TuneOptions tune_;
   InspectOptions inspect_;

@@ -111,7 +111,14 @@ std::vector<Look> looks_of(const Plot& plot) {
 }
 
 bool has_line(SeriesStyle style) { return style != SeriesStyle::Points && style != SeriesStyle::Cloud; }
-std::string curve(const PlotSeries& series, const Look& look, std::size_t index, const std::string& title) {
+/// Those that are drawn first are larger, so that they show where later ones lie on them.
+double marker_size_of(std::size_t index, std::size_t all) {
+  constexpr double kLargest = 1, kSmallest = 0.65;
+  return all > 1 ? kLargest + (kSmallest - kLargest) * double(index) / double(all - 1) : 0.7;
+}
+
+std::string curve(const PlotSeries& series, const Look& look, std::size_t index, double marker_size,
+                  const std::string& title) {
   std::string color = kColors[look.color];
   if (series.style == SeriesStyle::Cloud) color.insert(1, "A0");  // gnuplot: two digits of transparency first
   std::string text = "$data" + std::to_string(index) + " using 1:2 with " + style_words(series.style) +
@@ -122,7 +129,7 @@ std::string curve(const PlotSeries& series, const Look& look, std::size_t index,
     if (look.dash > 1) text += " dashtype " + std::to_string(look.dash);
   }
   if (has_markers(series.style))
-    text += " pointtype " + std::to_string(kMarkers[look.marker]) + " pointsize 0.7";
+    text += " pointtype " + std::to_string(kMarkers[look.marker]) + " pointsize " + number(marker_size);
   return text + " title " + quoted(title);
 }
 
@@ -193,9 +200,10 @@ std::string label_words(const PlotLayout& layout, const std::vector<Look>& looks
 
 // --- Axes
 
-constexpr int kTic_px = 60;  ///< of an axis for one number
+constexpr int kLegendGap_px = 10;  ///< between the axes and the legend
+constexpr int kTic_px = 60;        ///< of an axis for one number
 
-std::string short_number(double v) {
+std::string tic_text(double v) {
   std::array<char, 40> text;
   return {text.data(),
           std::to_chars(text.data(), text.data() + text.size(), v, std::chars_format::general, 6).ptr};
@@ -205,7 +213,7 @@ std::string tic_words(const char* which, const AxisRange& range, int most) {
   const AxisTics tics = logarithmic_tics(range, most);
   std::string text;
   for (const double v : tics.numbers)
-    text += (text.empty() ? "" : ", ") + quoted(short_number(v)) + " " + number(v);
+    text += (text.empty() ? "" : ", ") + quoted(tic_text(v)) + " " + number(v);
   for (const double v : tics.plain)
     if (std::find(tics.numbers.begin(), tics.numbers.end(), v) == tics.numbers.end())
       text += std::string(text.empty() ? "" : ", ") + "'' " + number(v) + " 1";
@@ -268,7 +276,8 @@ std::string plot_script(const Plot& plot, const PlotFiles& files) {
   script +=
       "set border 3 linecolor rgb '#404040'\nset tics nomirror\nset grid linecolor rgb '#b0b0b0' linewidth "
       "0.5\n";
-  script += "set key outside right top Left reverse samplen 3\nset title " +
+  script += "set key at " + on_screen(area.x1 + kLegendGap_px, area.y0, files) +
+            " left top vertical Left reverse samplen 3\nset title " +
             quoted(fitted_text(plot.title, kTextFont_px, title_px)) + "\n";
   script += margin_words(area, files) +
             axis_words("x", plot.x, layout.x, area.width(), area.width() / kTic_px) +
@@ -281,7 +290,8 @@ std::string plot_script(const Plot& plot, const PlotFiles& files) {
     if (!anything_drawable(series, plot)) continue;
     script += data_block(series, plot, i);
     curves += (curves.empty() ? "plot " : ", \\\n     ") +
-              curve(series, looks[i], i, fitted_text(series.name, kTextFont_px, name_px));
+              curve(series, looks[i], i, marker_size_of(i, plot.series.size()),
+                    fitted_text(series.name, kTextFont_px, name_px));
   }
   if (curves.empty()) return script + kEmptyPlot;
   script += label_words(layout, looks, files);

@@ -96,7 +96,7 @@ bool continues_a_sign(unsigned char c) { return c >= 0x80 && c < 0xc0; }
 
 // --- Labels
 
-constexpr int kMarker_px = 5;      ///< half of a marker's box
+constexpr int kMarker_px = 6;      ///< half of a marker's box
 constexpr int kLabelGap_px = 2;    ///< around the letters
 constexpr double kJoined_px = 14;  ///< from here on a line leads to the point
 
@@ -130,7 +130,7 @@ BoxWish wish_of(const PlotLabel& label) {
            {p.x - size.x / 2.0, below}}};
 }
 
-double distance(dvec2 p, const RectI& box) {
+double distance_to_box(dvec2 p, const RectI& box) {
   const double x = std::max({box.x0 - p.x, 0.0, p.x - box.x1}),
                y = std::max({box.y0 - p.y, 0.0, p.y - box.y1});
   return std::hypot(x, y);
@@ -168,7 +168,7 @@ void place_labels(const Plot& plot, PlotLayout& layout) {
     }
     layout.labels.push_back(wanted[i]);
     layout.labels.back().box_px = *places[i];
-    layout.labels.back().joined = distance(wanted[i].point_px, *places[i]) > kJoined_px;
+    layout.labels.back().joined = distance_to_box(wanted[i].point_px, *places[i]) > kJoined_px;
   }
 }
 

@@ -77,6 +77,10 @@ std::vector<double> polygon_shares(const RegulatorReport& report) {
   return shares;
 }
 
+/// What is 0 but for rounding would stretch the axis over ten decades. Not computed stays not computed.
+constexpr double kLeastFiducial = 1e-3;
+double drawn_fiducial(double value) { return value < kLeastFiducial ? kLeastFiducial : value; }
+
 }  // namespace
 
 std::vector<bool> polygon_front(const RegulatorReport& report) {
@@ -156,12 +160,12 @@ Plot calibration_plot(const RegulatorReport& report, std::size_t index) {
   Plot plot{std::string(fiducial.label) + " against image error: rank correlation " +
                 (summary.error.defined ? fixed(summary.error.rho, 2) : "undefined") +
                 ", n = " + std::to_string(summary.error.n),
-            {fiducial.label, fiducial.unit, true},
+            {std::string(fiducial.label) + ", at least " + fixed(kLeastFiducial, 3), fiducial.unit, true},
             {"error of the layer alone, RMS", "code values", true},
             {}};
   PlotSeries samples{"layer and frame", {}, SeriesStyle::Cloud, {}};
   for (const CalibrationSample& sample : report.samples)
-    samples.points.push_back({sample.fiducials[index], sample.error});
+    samples.points.push_back({drawn_fiducial(sample.fiducials[index]), sample.error});
   PlotSeries median{"median of an octave", {}, SeriesStyle::LinePoints, {}};
   PlotSeries lower{"quartiles", {}, SeriesStyle::Line, {}},
       upper{"upper quartile", {}, SeriesStyle::Line, {}};
