@@ -119,7 +119,7 @@ TEST_F(TwoRuns, DiffOfPlansSaysWhatIsDifferentWithoutPictures) {
   const Outcome outcome = run("diff a b");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("geometric_px"), HasSubstr("polygons_rendered"),
-                                    HasSubstr("ball"), HasSubstr("no pictures were compared: b has none")));
+                                    HasSubstr("ball"), HasSubstr("no pictures were compared: a has none")));
   const Json runs = Json::parse(run("diff --json a b").output)["runs"];
   ASSERT_EQ(runs["settings"].size(), 1u);
   EXPECT_EQ(runs["settings"][0], (Json{{"name", "geometric_px"}, {"a", "1.0"}, {"b", "4.0"}}));
