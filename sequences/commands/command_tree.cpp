@@ -67,6 +67,7 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_runs(stop);
   add_explain();
   add_tune(stop);
+  add_compare(stop);
   add_inspect();
   add_init();
   add_diff();
@@ -74,7 +75,7 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_warps();
   add_accuracy();
   for (const char* command :
-       {"render", "plan", "audit", "explain", "tune", "inspect", "init", "warps", "accuracy"})
+       {"render", "plan", "audit", "explain", "tune", "compare", "inspect", "init", "warps", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
   add_examples(app_);
 }
@@ -125,6 +126,13 @@ void CommandTree::add_tune(const std::atomic<bool>& stop) {
       "tune", "the cheapest thresholds that hold a quality, or the finest ones within a time");
   add_tune_options(*command, tune_);
   command->callback([this, &stop] { exit_code_ = run_tune(tune_, stop, std::cout); });
+}
+
+void CommandTree::add_compare(const std::atomic<bool>& stop) {
+  CLI::App* command = app_.add_subcommand(
+      "compare", "policies on the same frames: cost, time, error and popping, with a video side by side");
+  add_compare_options(*command, compare_);
+  command->callback([this, &stop] { exit_code_ = run_compare(compare_, stop, std::cout); });
 }
 
 void CommandTree::add_inspect() {

@@ -9,6 +9,7 @@
 
 #include "sequences/commands/accuracy.h"
 #include "sequences/commands/cache_options.h"
+#include "sequences/commands/compare.h"
 #include "sequences/commands/diff_command.h"
 #include "sequences/commands/explain.h"
 #include "sequences/commands/export_command.h"
@@ -37,6 +38,7 @@ class CommandTree {
   void add_runs(const std::atomic<bool>& stop);
   void add_explain();
   void add_tune(const std::atomic<bool>& stop);
+  void add_compare(const std::atomic<bool>& stop);
   void add_inspect();
   void add_init();
   void add_diff();
@@ -49,6 +51,7 @@ class CommandTree {
   std::string split_;
   ExplainOptions explain_;
   TuneOptions tune_;
+  CompareOptions compare_;
   InspectOptions inspect_;
   InitOptions init_;
   DiffOptions diff_;

@@ -3,12 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <filesystem>
 #include <iomanip>
+#include <optional>
 #include <ostream>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/files/number_text.h"
+#include "sequences/results/finished_run.h"
+#include "sequences/results/run_difference.h"
 
 namespace talisman::sequences {
 namespace {
@@ -23,7 +28,7 @@ nlohmann::json json_of(const Quality& quality, const QualityOptions& options) {
 }
 
 void print_json(const DiffReport& report, const DiffSummary& summary, const DiffOptions& options,
-                std::ostream& out) {
+                const std::optional<RunDifference>& runs, std::ostream& out) {
   nlohmann::json document{
       {"schema", "talisman.diff/1"}, {"a", options.a}, {"b", options.b}, {"frames", nlohmann::json::array()}};
   for (const FrameDiff& frame : report.frames) {
@@ -31,10 +36,12 @@ void print_json(const DiffReport& report, const DiffSummary& summary, const Diff
     line["name"] = frame.name;
     document["frames"].push_back(line);
   }
-  document["mean"] = json_of(summary.mean, options.quality);
-  document["worst"] = json_of(summary.worst, options.quality);
+  const bool has_pictures = !report.frames.empty();
+  document["mean"] = has_pictures ? json_of(summary.mean, options.quality) : nlohmann::json();
+  document["worst"] = has_pictures ? json_of(summary.worst, options.quality) : nlohmann::json();
   document["only_a"] = report.only_a;
   document["only_b"] = report.only_b;
+  if (runs) document["runs"] = json_of(*runs);
   out << document.dump(2) << "\n";
 }
 
@@ -69,18 +76,68 @@ void print_table(const DiffReport& report, const DiffSummary& summary, const Dif
   print_missing(report.only_b, options.b, options.a, out);
 }
 
+/// A plan and a run without frame files have none.
+bool has_pictures(const std::string& folder) {
+  std::error_code error;
+  return std::filesystem::is_directory(folder + "/frames", error) &&
+         !std::filesystem::is_empty(folder + "/frames", error);
+}
+
+/// Both are folders in which a run lies: what else they differ in is compared, too. Of a run that was stopped there
+/// are pictures alone.
+bool are_runs(const DiffOptions& options) {
+  if (!holds_run(options.a) || !holds_run(options.b)) return false;
+  if (!has_pictures(options.a) || !has_pictures(options.b)) return true;
+  for (const std::string& folder : {options.a, options.b}) {
+    std::error_code error;
+    if (!std::filesystem::exists(folder + "/decisions.jsonl.partial", error)) continue;
+    std::fprintf(stderr, "note: %s holds a run that is not complete: pictures alone are compared\n",
+                 folder.c_str());
+    return false;
+  }
+  return true;
+}
+
+std::string frames_in_words(std::size_t count, const std::string& where) {
+  return std::to_string(count) + (count == 1 ? " frame is in " : " frames are in ") + where + " only";
+}
+
+/// Why the result is partial, in one line.
+void say_why_partial(const DiffOptions& options, std::size_t only_a, std::size_t only_b) {
+  const std::string a = only_a > 0 ? frames_in_words(only_a, options.a) : "",
+                    b = only_b > 0 ? frames_in_words(only_b, options.b) : "";
+  std::fprintf(stderr, "error: %s%s%s: the others were compared\n", a.c_str(),
+               a.empty() || b.empty() ? "" : ", ", b.c_str());
+}
+
 }  // namespace
 
 int run_diff(const DiffOptions& options, std::ostream& out) {
   DiffOptions effective = options;
   effective.quality.flip = options.quality.flip || !options.map_dir.empty();
-  const DiffReport report = diff(effective);
+  std::optional<RunDifference> runs;
+  if (are_runs(options)) runs = run_difference(options.a, options.b);
+  const bool compares_pictures = !runs || (has_pictures(options.a) && has_pictures(options.b));
+  if (!compares_pictures && !options.map_dir.empty())
+    throw InputError("--map needs pictures, but " + (has_pictures(options.a) ? options.b : options.a) +
+                     " has none");
+  const DiffReport report = compares_pictures ? diff(effective) : DiffReport{};
   const DiffSummary summary = summarize(report.frames);
-  if (options.json)
-    print_json(report, summary, effective, out);
-  else
-    print_table(report, summary, effective, out);
-  return report.partial() ? kPartialResult : kSuccess;
+  if (options.json) {
+    print_json(report, summary, effective, runs, out);
+  } else {
+    if (runs) out << text_of(*runs) << "\n";
+    if (compares_pictures)
+      print_table(report, summary, effective, out);
+    else
+      out << "no pictures were compared: " << (has_pictures(options.a) ? options.b : options.a)
+          << " has none\n";
+  }
+  if (!report.partial() && !(runs && runs->is_partial())) return kSuccess;
+  const bool by_pictures = report.partial();
+  say_why_partial(options, by_pictures ? report.only_a.size() : runs->only_a.size(),
+                  by_pictures ? report.only_b.size() : runs->only_b.size());
+  return kPartialResult;
 }
 
 }  // namespace talisman::sequences

@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 
 #include "sequences/pictures/picture_sheet.h"
 #include "sequences/pipeline/layer_planning.h"
@@ -13,6 +10,7 @@
 #include "sequences/pipeline/shade_passes.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/finished_run.h"
 #include "sequences/results/layer_alone.h"
 
 namespace talisman::sequences {
@@ -71,22 +69,6 @@ FrameReport look_at(const Pipeline& pipeline, PipelineState& state, int frame, c
     explained.pictures = {old_alone(pipeline, report, id, *kept),
                           fresh_alone(pipeline, state, report, id, prepared)};
   return report;
-}
-
-Json parsed_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
-}
-
-void require_run(const std::string& folder, const Json& run) {
-  std::error_code error;
-  if (std::filesystem::exists(folder + "/decisions.jsonl.partial", error))
-    throw InputError("holds a run that is not complete, the same command with --resume continues it", folder);
-  if (!run.is_object() || !run.contains("settings"))
-    throw InputError("holds no run (no run.json of ours), must be the folder of a render or a plan", folder);
-  const std::string version = run.value("version", "");
-  if (version != TALISMAN_VERSION)
-    throw InputError("holds a run of version " + version + ", must be of " TALISMAN_VERSION, folder);
 }
 
 /// The picture's part in which either frame has something, grown by a border; the whole where nothing is.
@@ -152,28 +134,16 @@ ExplainedFrame explained_frame(const Sequence& sequence, const Settings& setting
 }
 
 ExplainedFrame explained_folder(const std::string& folder, int frame, Json& settings) {
-  const Json run = parsed_file(folder + "/run.json");
-  require_run(folder, run);
-  settings = run["settings"];
-  const std::string file = folder + "/decisions.jsonl";
-  std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError("is not there, must be as the run wrote it", file);
+  settings = finished_run(folder)["settings"];
   DecisionHistory history(frame);
-  int number = 0;
-  for (std::string line; std::getline(in, line);) try {
-      ++number;
-      history.add(Json::parse(line));
-    } catch (const Json::exception&) {
-      throw InputError("line " + std::to_string(number) + " is no decision, must be as the run wrote it",
-                       file);
-    }
+  for (const Json& line : finished_decisions(folder)) history.add(line);
   ExplainedFrame explained;
   explained.layers = history.layers();
   explained.last_planned = history.last_frame();
   if (explained.layers.empty())
     throw InputError(
         "has no frame " + std::to_string(frame) + ", the last one is " + std::to_string(history.last_frame()),
-        file);
+        folder + "/decisions.jsonl");
   return explained;
 }
 

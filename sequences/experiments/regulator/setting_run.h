@@ -39,6 +39,10 @@ class SettingRun {
   /// Of the last judge.
   const Quality& quality() const { return qualities_.back().quality; }
   SettingResult result() const;
+  /// Of the frames that were counted, as a run of its own would have it.
+  const Summary& summary() const { return summary_; }
+  /// Of each frame that was judged.
+  const std::vector<FrameDiff>& qualities() const { return qualities_; }
 
  private:
   RegulatorSetting setting_;

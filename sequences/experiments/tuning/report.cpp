@@ -21,7 +21,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// Of its pictures; without any: none.
-struct Measured {
+struct ShownQuality {
   double worst = NAN, mean = NAN;  ///< as they are printed; the mean of a setting that was drawn whole alone
 };
 
@@ -30,7 +30,7 @@ TuneGoal measure_of(const TuneReport& report) {
   return report.goal.is_of_pictures() ? report.goal : TuneGoal{GoalKind::Flip, 1, false};
 }
 
-Measured measured_of(const TuneReport& report, const TunePoint& point) {
+ShownQuality measured_of(const TuneReport& report, const TunePoint& point) {
   const std::vector<double> known = point.quality.known();
   if (known.empty()) return {};
   const TuneGoal goal = measure_of(report);
@@ -122,7 +122,7 @@ std::string indented(const std::string& text) {
 }
 
 Json json_of_point(const TuneReport& report, const TunePoint& point) {
-  const Measured measured = measured_of(report, point);
+  const ShownQuality measured = measured_of(report, point);
   Json json{{"geometric_px", point.plan.thresholds.geometric_px},
             {"cost_share", number_or_null(report.cost_share(point.plan))},
             {"worst_ms", worst_of(point.plan.frame_ms)},
@@ -158,7 +158,7 @@ PlotSeries series_of_quality(const TuneReport& report, const std::string& name, 
   double labelled = HUGE_VAL;
   for (const TunePoint& point : report.curve) {
     if (point.quality.frames_drawn == 0 || point.quality.is_whole() != whole) continue;
-    const Measured measured = measured_of(report, point);
+    const ShownQuality measured = measured_of(report, point);
     const double cost = 100 * report.cost_share(point.plan);
     series.points.push_back({cost, of_mean ? measured.mean : measured.worst});
     const bool has_room = !of_mean && std::abs(cost - labelled) > kRoomOfLabel_percent;
@@ -220,7 +220,7 @@ Plot tune_plot(const TuneReport& report) {
   for (const TunePoint& point : report.curve) least = std::min(least, 100 * report.cost_share(point.plan));
   plot.series.push_back(goal_line(report, least, 100));
   if (report.per_layer) {
-    const Measured measured = measured_of(report, report.per_layer->point);
+    const ShownQuality measured = measured_of(report, report.per_layer->point);
     const bool of_mean = report.goal.of_mean;
     PlotSeries own{of_mean ? "per layer, mean" : "per layer, worst", {}, SeriesStyle::Points, {}};
     own.points = {
@@ -236,7 +236,7 @@ std::string tune_csv(const TuneReport& report) {
       "setting,geometric_px,cost_ms,cost_share,worst_ms,mean_ms,worst_%s,mean_%s,frames_drawn,frames\n", unit,
       unit);
   const auto add = [&](const char* name, const TunePoint& point) {
-    const Measured measured = measured_of(report, point);
+    const ShownQuality measured = measured_of(report, point);
     csv += std::string(name) + "," + exact(point.plan.thresholds.geometric_px) + "," +
            exact(point.plan.cost_ms) + "," + exact(report.cost_share(point.plan)) + "," +
            exact(worst_of(point.plan.frame_ms)) + "," + exact(mean_of(point.plan.frame_ms)) + "," +
