@@ -5,6 +5,7 @@
 #include "chunker/shadow_map.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
+#include "layers/spot_cone.h"
 #include "layers/vectors.h"
 
 namespace talisman::chunker {
@@ -57,6 +58,9 @@ LightSet::Spot spot(const layers::LightState& light, const dvec3& eye, int shado
   result.axis = normalized3(float4(vec3(light.direction)));
   result.cos_outer = static_cast<float>(outer);
   result.inverse_width = static_cast<float>(1 / std::max(inner - outer, kSharpest));
+  const layers::ConeRamp ramp = layers::cone_ramp(light);
+  result.ramp = static_cast<float>(ramp.constant);
+  result.ramp_slope = static_cast<float>(ramp.slope);
   result.shadow = shadow;
   result.fading = fading(light);
   return result;

@@ -204,7 +204,7 @@ void for_each_light(const Shader& shader, Float4 normal, Float4 position, const 
   for (const auto& source : shader.lights->spot) {
     const Float4 to_light = normalized3(source.position - position);
     const float t = clamp_unit((-dot3(source.axis, to_light) - source.cos_outer) * source.inverse_width);
-    const float falloff = (t * t) * (3 - 2 * t);
+    const float falloff = (t * t) * (source.ramp - source.ramp_slope * t);
     add_light(shader, normal, to_eye, to_light, faded_color(source, position, source.color * splat(falloff)),
               source.shadow, add);
   }

@@ -87,6 +87,7 @@ struct LightSet {
     Float4 color;
     Float4 axis;  ///< the way the light travels, unit length
     float cos_outer = 0, inverse_width = 1;
+    float ramp = 3, ramp_slope = 2;  ///< layers/spot_cone.h
     int shadow = -1;
     Fading fading{};
   };

@@ -296,7 +296,7 @@ HWY_INLINE void store3(const Vec3& v, std::array<BlockRow, 3>& rows, int i) {
 HWY_INLINE Vec3 spot_color(const LightSet::Spot& source, const Vec3& to_light) {
   const Vec cosine = hn::Neg(dot(set3(source.axis), to_light));
   const Vec t = clamped(hn::Mul(hn::Sub(cosine, set(source.cos_outer)), set(source.inverse_width)));
-  const Vec falloff = hn::Mul(hn::Mul(t, t), hn::Sub(set(3), hn::Mul(set(2), t)));
+  const Vec falloff = hn::Mul(hn::Mul(t, t), hn::Sub(set(source.ramp), hn::Mul(set(source.ramp_slope), t)));
   return scaled(set3(source.color), falloff);
 }
 

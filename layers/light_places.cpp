@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "layers/spot_cone.h"
 #include "layers/vectors.h"
 
 namespace talisman::layers {
@@ -78,7 +79,8 @@ void add_cone(const LightState& light, const BodySurface& body, std::vector<Surf
   if (!(length > 0)) return;
   const dvec3 axis = light.direction / length;
   add_ray(body, light.position, axis, places);
-  const double half = (std::cos(light.inner_cone_rad) + std::cos(light.outer_cone_rad)) / 2;
+  const double inner = std::cos(light.inner_cone_rad), outer = std::cos(light.outer_cone_rad);
+  const double half = outer + cone_ramp(light).half() * (inner - outer);
   for_each_on_cone(axis, half, [&](const dvec3& way) { add_ray(body, light.position, way, places); });
 }
 

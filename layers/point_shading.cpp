@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/power.h"
+#include "layers/spot_cone.h"
 #include "layers/vectors.h"
 
 namespace talisman::layers {
@@ -131,14 +132,14 @@ void add_part(const Scene& scene, const Part& part, double weight, MeanSurface& 
   mean.shininess += (specular.x + specular.y + specular.z) * std::max(material.shininess, 0.0f);
 }
 
-/// 1 in the inner cone of a spot, 0 outside the outer one, smooth between; 1 for other lights.
+/// 1 in the inner cone of a spot, 0 outside the outer one, between as spot_cone.h has it; 1 for other lights.
 double in_cone(const LightState& light, const dvec3& to_light) {
   if (light.kind != Light::Kind::Spot) return 1;
   constexpr double kSharpest = 1e-6;  // a cone without a soft edge still has a finite slope
   const double outer = std::cos(light.outer_cone_rad), inner = std::cos(light.inner_cone_rad);
   const double on_axis = -dot(unit_or_zero(light.direction), to_light);
   const double t = std::clamp((on_axis - outer) / std::max(inner - outer, kSharpest), 0.0, 1.0);
-  return t * t * (3 - 2 * t);
+  return cone_ramp(light).at(t);
 }
 
 }  // namespace

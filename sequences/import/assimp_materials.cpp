@@ -62,8 +62,10 @@ int material_texture(Import& import, const aiMaterial& from, bool opaque) {
   if (type == aiTextureType_NONE || from.GetTexture(type, 0, &written) != aiReturn_SUCCESS) return -1;
   const std::string reference = written.C_Str();
   if (reference.empty()) return -1;
-  const layers::Wrap u = wrap_of(from, _AI_MATKEY_MAPPINGMODE_U_BASE, type),
-                     v = wrap_of(from, _AI_MATKEY_MAPPINGMODE_V_BASE, type);
+  layers::Wrap u = wrap_of(from, _AI_MATKEY_MAPPINGMODE_U_BASE, type),
+               v = wrap_of(from, _AI_MATKEY_MAPPINGMODE_V_BASE, type);
+  if (const auto own = import.collada.find(from.GetName().C_Str()); own != import.collada.end())
+    u = own->second.wrap_u, v = own->second.wrap_v;
   const std::string way =
       std::to_string(static_cast<int>(u)) + std::to_string(static_cast<int>(v)) + (opaque ? "opaque:" : ":");
   const auto [entry, is_new] = import.texture_of.emplace(way + reference, -1);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
@@ -16,6 +17,7 @@
 #include "sequences/import/limits.h"
 #include "sequences/import/lower_case.h"
 #include "sequences/import/recorded_files.h"
+#include "sequences/import/wide_text.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {
@@ -121,22 +123,26 @@ layers::vec3 unit_or_up(const aiVector3D& v) {
 }
 
 /// The set of coordinates by which the colour map of the mesh is looked up.
-unsigned coordinate_set(const aiScene& scene, const aiMesh& mesh) {
+unsigned coordinate_set(const Import& import, const aiMesh& mesh) {
+  const aiScene& scene = import.from;
   if (mesh.mMaterialIndex >= scene.mNumMaterials || !scene.mMaterials[mesh.mMaterialIndex]) return 0;
   const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
   int set = 0;
-  material.Get(_AI_MATKEY_UVWSRC_BASE, color_map_of(material), 0, set);
+  if (const auto own = import.collada.find(material.GetName().C_Str()); own != import.collada.end())
+    set = own->second.set;
+  else
+    material.Get(_AI_MATKEY_UVWSRC_BASE, color_map_of(material), 0, set);
   return set > 0 && mesh.HasTextureCoords(static_cast<unsigned>(set)) ? static_cast<unsigned>(set) : 0;
 }
 
-layers::Mesh import_mesh(const aiScene& scene, const aiMesh& from) {
+layers::Mesh import_mesh(const Import& import, const aiMesh& from) {
   layers::Mesh mesh;
   mesh.name = text(from.mName);
   const unsigned n = from.mVertices ? from.mNumVertices : 0;
   for (unsigned i = 0; i < n; ++i) mesh.positions.push_back(to_float3(from.mVertices[i]));
   if (from.HasNormals())
     for (unsigned i = 0; i < n; ++i) mesh.normals.push_back(unit_or_up(from.mNormals[i]));
-  if (const unsigned set = coordinate_set(scene, from); from.HasTextureCoords(set))
+  if (const unsigned set = coordinate_set(import, from); from.HasTextureCoords(set))
     for (unsigned i = 0; i < n; ++i)
       mesh.uvs.push_back({from.mTextureCoords[set][i].x, from.mTextureCoords[set][i].y});
   if (from.HasVertexColors(0))
@@ -219,7 +225,7 @@ void import_skin(Import& import, int mesh_index) {
 void import_meshes(Import& import) {
   for (unsigned i = 0; i < import.from.mNumMeshes; ++i) {
     const aiMesh* mesh = import.from.mMeshes[i];
-    import.model.scene.meshes.push_back(mesh ? import_mesh(import.from, *mesh) : layers::Mesh{});
+    import.model.scene.meshes.push_back(mesh ? import_mesh(import, *mesh) : layers::Mesh{});
     if (mesh && mesh->mNumBones > 0 && mesh->mBones) import_skin(import, static_cast<int>(i));
   }
 }
@@ -297,6 +303,8 @@ ImportedModel read_with_assimp(const ModelPlace& place) {
   const aiScene* from = read_file(importer, place.path, losses);
   Import import(*from, place, files);
   import.model.warnings = losses;
+  if (lower_extension(place.path) == ".dae")
+    import.collada = collada_maps(std::string{std::istreambuf_iterator<char>(*open_text(place.path)), {}});
   import_nodes(import, from->mRootNode, import_frame(import, file_frame(*from)), "", 0);
   import_materials(import);
   import_meshes(import);

@@ -11,6 +11,7 @@
 
 #include <assimp/scene.h>
 
+#include "sequences/import/collada_maps.h"
 #include "sequences/import/model_import.h"
 #include "sequences/import/texture_search.h"
 
@@ -27,8 +28,9 @@ struct Import {
   FileUses& files;
   ImportedModel model;
   std::map<const aiNode*, int> node_of;
-  std::map<std::string, int> node_named;  ///< the first of that name
-  std::map<std::string, int> texture_of;  ///< texture reference (see material_texture) → index or -1
+  std::map<std::string, int> node_named;      ///< the first of that name
+  std::map<std::string, ColladaMap> collada;  ///< by material; empty for other formats
+  std::map<std::string, int> texture_of;      ///< texture reference (see material_texture) → index or -1
 
   void warn(const std::string& text) { model.warnings.push_back(text); }
   void warn_once(const std::string& text) {

@@ -186,6 +186,22 @@ TEST(ForeignSurface, LampFadesWithTheSquareOfItsDistance) {
   EXPECT_NEAR(middle_of(scene).r, 0.5 * (1 - 1.0 / 16), 0.01);
 }
 
+// The wall is square to the way there, 2 m off the lamp: 4 cd are 1 lx. KHR_lights_punctual has t² at t = 2/3: 4/9.
+TEST(ForeignSurface, LampOfAForeignFileFadesAsTheSquareOfItsCone) {
+  layers::Scene scene = wall();
+  scene.lights.resize(1);
+  layers::Light& lamp = scene.lights[0];
+  lamp.kind = layers::Light::Kind::Spot;
+  lamp.attenuation = {0, 0, 1};
+  lamp.color = {4, 4, 4};
+  lamp.inner_cone_rad = 0;
+  lamp.outer_cone_rad = std::acos(0.4);  // 1 - cos is 0 … 0.6
+  lamp.direction = {0.6, 0, -0.8};       // the wall's middle lies at cos 0.8: t = 0.4 / 0.6
+  EXPECT_NEAR(middle_of(scene).r, 4.0 / 9, 0.01);
+  lamp.attenuation = {4, 0, 0};  // an author's: t² (3 - 2 t) = 20/27
+  EXPECT_NEAR(middle_of(scene).r, 20.0 / 27, 0.01);
+}
+
 TEST(ForeignSurface, AlphaBelowTheCutoffIsNotThere) {
   layers::Scene scene = wall();
   scene.materials[0].unlit = true;

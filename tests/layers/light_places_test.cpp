@@ -50,6 +50,14 @@ TEST(LightPlaces, SpotDrawsItsAxisAndTheRingOfHalfLight) {
   }
 }
 
+// KHR_lights_punctual: t² = 1/2 where t is the root of 1/2.
+TEST(LightPlaces, SpotOfAForeignFileHasItsHalfLightFartherIn) {
+  LightState light = spot({1, 4, 2}, 0.2, 0.3);
+  light.attenuation = {0, 0, 1};
+  const double half = std::acos(std::cos(0.3) + std::sqrt(0.5) * (std::cos(0.2) - std::cos(0.3)));
+  EXPECT_NEAR(glm::distance(places_of(light).at(1).position, {1, 0, 2}), 4 * std::tan(half), 1e-9);
+}
+
 TEST(LightPlaces, SpotFromBelowLightsTheUnderside) {
   LightState light = spot({0, -3, 0}, 0.2, 0.3);
   light.direction = {0, 1, 0};

@@ -64,6 +64,7 @@ TEST(ShadedColor, EqualsTheRenderersFormula) {
                                   glm::normalize(uniform3(random, -1, 1)), vec3(uniform3(random, 0, 1)))};
     frame.lights.back().inner_cone_rad = uniform(random, 0, 0.7);
     frame.lights.back().outer_cone_rad = frame.lights.back().inner_cone_rad + uniform(random, 0.05, 0.8);
+    if (trial % 4 == 0) frame.lights.back().attenuation = {0, 0, 1};  // of a foreign file: another ramp
     SurfacePoint point{uniform3(random, -2, 2), glm::normalize(uniform3(random, -1, 1)),
                        dvec3(frame.camera.world_from_camera[3])};
     Layer layer;

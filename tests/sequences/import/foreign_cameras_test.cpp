@@ -222,6 +222,67 @@ TEST(ColladaTransparency, IsTurnedOverWhereNothingWouldBeOpaque) {
   EXPECT_FLOAT_EQ(first_opacity({"0.25"}, 0), 0.25f);
 }
 
+void replace_in(std::string& text, const std::string& what, const std::string& by) {
+  const std::size_t at = text.find(what);
+  ASSERT_NE(at, std::string::npos) << what;
+  text.replace(at, what.size(), by);
+}
+
+std::string coordinate_source(const std::string& id, const std::string& values) {
+  return "<source id=\"" + id + "\"><float_array id=\"" + id + "a\" count=\"6\">" + values +
+         "</float_array><technique_common><accessor source=\"#" + id +
+         "a\" count=\"3\" stride=\"2\"><param name=\"S\" type=\"float\"/><param name=\"T\" "
+         "type=\"float\"/></accessor></technique_common></source>";
+}
+
+std::string coordinate_input(const std::string& source, const std::string& set) {
+  return "<input semantic=\"TEXCOORD\" source=\"#" + source + "\" offset=\"0\" set=\"" + set + "\"/>";
+}
+
+/// A picture on a triangle whose coordinates reach 2 in set 0 and 1 in set 1.
+ImportedModel with_sampler(const std::string& sampler, int set) {
+  const TemporaryFolder folder;
+  folder.write("t.ppm", "P6\n1 1\n255\nabc");
+  std::string text = with_transparencies({"1"}).text();
+  replace_in(text, "<library_effects>",
+             "<library_images><image "
+             "id=\"i\"><init_from>t.ppm</init_from></image></library_images><library_effects>");
+  replace_in(text, "<profile_COMMON>",
+             "<profile_COMMON><newparam sid=\"face\"><surface "
+             "type=\"2D\"><init_from>i</init_from></surface></newparam>"
+             "<newparam sid=\"look\"><sampler2D><source>face</source>" +
+                 sampler + "</sampler2D></newparam>");
+  replace_in(text, "<diffuse><color>1 1 1 1</color>",
+             "<diffuse><texture texture=\"look\" texcoord=\"MAP\"/>");
+  replace_in(text, "<vertices",
+             coordinate_source("u0", "0 0 2 0 0 2") + coordinate_source("u1", "0 0 1 0 0 1") + "<vertices");
+  replace_in(text, "<p>", coordinate_input("u0", "0") + coordinate_input("u1", "1") + "<p>");
+  replace_in(text, "target=\"#m0\"/>",
+             "target=\"#m0\"><bind_vertex_input semantic=\"MAP\" input_semantic=\"TEXCOORD\" input_set=\"" +
+                 std::to_string(set) + "\"/></instance_material>");
+  return import_model(folder.write("map.dae", text));
+}
+
+TEST(ColladaMap, WrapsAsItsSamplerSays) {
+  const auto wraps = [](const std::string& sampler) {
+    const layers::Texture texture = with_sampler(sampler, 0).scene.textures.at(0);
+    return std::pair(texture.wrap_u, texture.wrap_v);
+  };
+  using layers::Wrap;
+  EXPECT_EQ(wraps(""), std::pair(Wrap::Repeat, Wrap::Repeat));
+  EXPECT_EQ(wraps("<wrap_s>CLAMP</wrap_s><wrap_t>MIRROR</wrap_t>"), std::pair(Wrap::Clamp, Wrap::Mirror));
+  EXPECT_EQ(wraps("<wrap_s>WRAP</wrap_s><wrap_t>BORDER</wrap_t>"), std::pair(Wrap::Repeat, Wrap::Clamp));
+}
+
+TEST(ColladaMap, IsLookedUpByTheSetItIsBoundTo) {
+  for (const int set : {0, 1}) {
+    float widest = 0;
+    for (const layers::vec2& uv : with_sampler("", set).scene.meshes.at(0).uvs)
+      widest = std::max(widest, uv.x);
+    EXPECT_EQ(widest, set == 0 ? 2 : 1);
+  }
+}
+
 TEST(ForeignText, ColladaIn16BitsIsReadWithItsNames) {
   const TemporaryFolder folder;
   std::string text = Collada().text(), wide = "\xFF\xFE";
