@@ -13,9 +13,11 @@ bool is_option(const std::string& argument) { return argument.size() > 1 && argu
 /// Without what it is set to: "--size" of "--size=64x48".
 std::string name_of(const std::string& option) { return option.substr(0, option.find('=')); }
 
+/// Without those that --help does not list.
 std::vector<std::string> commands_of(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+  for (const CLI::App* command :
+       app.get_subcommands([](const CLI::App* listed) { return !listed->get_group().empty(); }))
     names.push_back(command->get_name());
   return names;
 }
