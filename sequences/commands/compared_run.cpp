@@ -130,9 +130,7 @@ ResolvedRun resolve_setting(const std::string& setting, const CommandLine& given
     line.frames = given.frames;
     line.size = given.size;
     line.progress = given.progress;
-    ResolvedRun run = resolve(line, sequence, false);
-    if (!run.warnings.empty()) throw InputError(run.warnings.front());
-    return run;
+    return resolve(line, sequence, false);
   });
 }
 
