@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// FBX as text: axes and units of GlobalSettings on a plane of known size, and textures that are not there.
+// FBX as text: axes and units of GlobalSettings on a plane of known size.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -11,8 +11,6 @@ namespace talisman::sequences {
 namespace {
 
 using layers::dvec3;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
 using tests::TemporaryFolder;
 
 /// The axes of a file: number and sign of what is up, in front and to the right, and centimetres per unit.
@@ -25,9 +23,8 @@ std::string setting(const std::string& name, int value) {
   return "\t\tP: \"" + name + "\", \"int\", \"Integer\", \"\"," + std::to_string(value) + "\n";
 }
 
-/// A quadrilateral of these twelve numbers; `objects` and `connections` are added.
-std::string fbx(const FbxFrame& frame, const std::string& places, const std::string& objects = "",
-                const std::string& connections = "") {
+/// A quadrilateral of these twelve numbers.
+std::string fbx(const FbxFrame& frame, const std::string& places) {
   return "; FBX 7.3.0 project file\nFBXHeaderExtension:  {\n\tFBXHeaderVersion: 1003\n\tFBXVersion: 7300\n}\n"
          "GlobalSettings:  {\n\tVersion: 1000\n\tProperties70:  {\n" +
          setting("UpAxis", frame.up) + setting("UpAxisSign", frame.up_sign) +
@@ -38,8 +35,8 @@ std::string fbx(const FbxFrame& frame, const std::string& places, const std::str
          "{\n\t\t\ta: " +
          places +
          "\n\t\t}\n\t\tPolygonVertexIndex: *4 {\n\t\t\ta: 0,1,2,-4\n\t\t}\n\t\tGeometryVersion: 124\n\t}\n"
-         "\tModel: 2000, \"Model::m\", \"Mesh\" {\n\t\tVersion: 232\n\t}\n" +
-         objects + "}\nConnections:  {\n\tC: \"OO\",2000,0\n\tC: \"OO\",1000,2000\n" + connections + "}\n";
+         "\tModel: 2000, \"Model::m\", \"Mesh\" {\n\t\tVersion: 232\n\t}\n}\nConnections:  {\n\tC: "
+         "\"OO\",2000,0\n\tC: \"OO\",1000,2000\n}\n";
 }
 
 /// The corners in the world, whatever their order: their bounds.
@@ -63,22 +60,6 @@ TEST(Fbx, AxesAndUnitsAreOurs) {
   expect_bounds(read({2, 1, 1, -1, 0, 1, 100}, "-1,-3,0,1,-3,0,1,-3,1,-1,-3,1"), {-1, 0, 3}, {1, 1, 3});
   // z up, inches: 100 x 50 inches are 2.54 x 1.27 m.
   expect_bounds(read({2, 1, 1, -1, 0, 1, 2.54}, "0,0,0,100,0,0,100,0,50,0,0,50"), {0, 0, 0}, {2.54, 1.27, 0});
-}
-
-TEST(Fbx, TextureThatIsNotThereIsSaidOnce) {
-  const TemporaryFolder folder;
-  const std::string objects =
-      "\tMaterial: 3000, \"Material::paint\", \"\" {\n\t\tVersion: 102\n\t\tShadingModel: \"lambert\"\n"
-      "\t\tProperties70:  {\n\t\t\tP: \"DiffuseColor\", \"Color\", \"\", \"A\",1,0,0\n\t\t}\n\t}\n"
-      "\tTexture: 4000, \"Texture::t\", \"\" {\n\t\tType: \"TextureVideoClip\"\n\t\tVersion: 202\n"
-      "\t\tTextureName: \"Texture::t\"\n\t\tFileName: \"D:\\art\\gone.jpg\"\n\t\tRelativeFilename: "
-      "\"gone.jpg\"\n\t}\n";
-  const std::string connections = "\tC: \"OO\",3000,2000\n\tC: \"OP\",4000,3000, \"DiffuseColor\"\n";
-  const ImportedModel model = import_model(
-      folder.write("plane.fbx", fbx({1, 1, 2, 1, 0, 1, 1}, "0,0,0,1,0,0,1,1,0,0,1,0", objects, connections)));
-  EXPECT_THAT(model.warnings, ElementsAre(HasSubstr("gone.jpg': is missing; a plain colour is used")));
-  const auto material = static_cast<std::size_t>(model.scene.parts.at(0).material);
-  EXPECT_EQ(model.scene.materials.at(material).base_color, layers::vec3(1, 0, 0));
 }
 
 }  // namespace

@@ -277,8 +277,8 @@ TEST(ColladaMap, WrapsAsItsSamplerSays) {
 TEST(ColladaMap, IsLookedUpByTheSetItIsBoundTo) {
   for (const int set : {0, 1}) {
     float widest = 0;
-    for (const layers::vec2& uv : with_sampler("", set).scene.meshes.at(0).uvs)
-      widest = std::max(widest, uv.x);
+    const ImportedModel model = with_sampler("", set);
+    for (const layers::vec2& uv : model.scene.meshes.at(0).uvs) widest = std::max(widest, uv.x);
     EXPECT_EQ(widest, set == 0 ? 2 : 1);
   }
 }
