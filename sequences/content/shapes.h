@@ -23,7 +23,7 @@ struct ShapeContent {
   double taper = 1;               ///< cylinder: its top over its bottom, 0 … 1; 0 is a cone
   int segments =
       32;  ///< sphere, cylinder and disc: 3 … 512 around; box and plane: 1 … 512 per side; triangles grow with it
-      ///< (sphere, box, plane: with its square), and lights per vertex are the more exact
+           ///< (sphere, box, plane: with its square), and lights per vertex are the more exact
   layers::Material material;
   std::string texture_file;         ///< empty: none
   std::string second_texture_file;  ///< Material::texture2, likewise

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/separate_pictures.h"
 
-
 #include "sequences/files/image_io.h"
 #include "sequences/results/layer_words.h"
 

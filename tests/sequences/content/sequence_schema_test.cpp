@@ -191,7 +191,8 @@ const std::vector<Fault> kSchemaFaults = {
     {24, "  - {name: floor, parts: [floor], shading: {first_blend: 0.5}}", "only together with textures"},
     {8, "  - {id: ball, sphere: 2, taper: 1}", "only together with cylinder"},
     {10, "  - {id: crate}", "has one of the keys box, sphere, cylinder, plane and disc"},
-    {10, "  - {id: crate, box: [1, 1, 1], plane: [1, 1]}", "one of box, sphere, cylinder, plane and disc, not two"},
+    {10, "  - {id: crate, box: [1, 1, 1], plane: [1, 1]}",
+     "one of box, sphere, cylinder, plane and disc, not two"},
     {14, "terrain: {heights: a.png, classes: {file: a.png}}", "has the key 'list' or 'textures'"},
     {20, "  - {kind: point, color: '#ffffff'}", "has the key 'position'"},
     // Keys that belong to a branch.
