@@ -220,6 +220,13 @@ std::string tic_words(const char* which, const AxisRange& range, int most) {
   return std::string("set ") + which + "tics (" + text + ")\n";
 }
 
+/// So that all names stand below each other: by itself gnuplot begins a second column, outside the picture.
+std::string legend_rows_words(std::size_t rows, int room_px) {
+  constexpr double kSpacing = 1, kRow_px = 21;  // gnuplot's own
+  const double spacing = std::min(kSpacing, kSpacing * room_px / (kRow_px * static_cast<double>(rows)));
+  return " maxrows " + std::to_string(rows) + " spacing " + number(spacing);
+}
+
 std::string axis_words(const char* which, const PlotAxis& axis, const AxisRange& range, int length_px,
                        int most) {
   std::string text = std::string("set ") + which + "label " +
@@ -277,7 +284,8 @@ std::string plot_script(const Plot& plot, const PlotFiles& files) {
       "set border 3 linecolor rgb '#404040'\nset tics nomirror\nset grid linecolor rgb '#b0b0b0' linewidth "
       "0.5\n";
   script += "set key at " + on_screen(area.x1 + kLegendGap_px, area.y0, files) +
-            " left top vertical Left reverse samplen 3\nset title " +
+            " left top vertical Left reverse samplen 3" +
+            legend_rows_words(plot.series.size() + 1, area.height()) + "\nset title " +
             quoted(fitted_text(plot.title, kTextFont_px, title_px)) + "\n";
   script += margin_words(area, files) +
             axis_words("x", plot.x, layout.x, area.width(), area.width() / kTic_px) +

@@ -186,7 +186,7 @@ TEST(ForeignSurface, LampFadesWithTheSquareOfItsDistance) {
   EXPECT_NEAR(middle_of(scene).r, 0.5 * (1 - 1.0 / 16), 0.01);
 }
 
-// The wall is square to the way there, 2 m off the lamp: 4 cd are 1 lx. KHR_lights_punctual has t² at t = 2/3: 4/9.
+// The lamp is at the eye, the wall 2 m before it: 4 cd are about 1 lx. KHR_lights_punctual has t² on the ramp of the cosines.
 TEST(ForeignSurface, LampOfAForeignFileFadesAsTheSquareOfItsCone) {
   layers::Scene scene = wall();
   scene.lights.resize(1);
@@ -196,10 +196,15 @@ TEST(ForeignSurface, LampOfAForeignFileFadesAsTheSquareOfItsCone) {
   lamp.color = {4, 4, 4};
   lamp.inner_cone_rad = 0;
   lamp.outer_cone_rad = std::acos(0.4);  // 1 - cos is 0 … 0.6
-  lamp.direction = {0.6, 0, -0.8};       // the wall's middle lies at cos 0.8: t = 0.4 / 0.6
-  EXPECT_NEAR(middle_of(scene).r, 4.0 / 9, 0.01);
-  lamp.attenuation = {4, 0, 0};  // an author's: t² (3 - 2 t) = 20/27
-  EXPECT_NEAR(middle_of(scene).r, 20.0 / 27, 0.01);
+  lamp.direction = {0.6, 0, -0.8};
+  const double half_pixel =
+      2 * std::tan(0.5) / 8;  // the texel's centre is that far right of and below the middle
+  const layers::dvec3 way(half_pixel, -half_pixel, -2);
+  const double length = glm::length(way), t = (glm::dot(lamp.direction, way) / length - 0.4) / 0.6;
+  EXPECT_NEAR(t, 0.73, 0.01);
+  EXPECT_NEAR(middle_of(scene).r, 4 / (length * length) * (2 / length) * t * t, 0.002);
+  lamp.attenuation = {4, 0, 0};  // an author's lamp, which does not fade with its distance
+  EXPECT_NEAR(middle_of(scene).r, 2 / length * t * t * (3 - 2 * t), 0.002);
 }
 
 TEST(ForeignSurface, AlphaBelowTheCutoffIsNotThere) {
