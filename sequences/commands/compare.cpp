@@ -27,6 +27,8 @@ namespace talisman::sequences {
 
 namespace {
 
+constexpr const char* kMark = "compare.json";
+
 /// What can be refused without the sequence.
 void require_settings(const std::vector<std::string>& settings) {
   std::set<std::string> files{"reference"};
@@ -55,12 +57,10 @@ std::vector<ComparedSettings> compared_settings(const CompareOptions& options, c
 void make_room(const std::string& folder) {
   if (holds_run(folder))
     throw InputError("--out is '" + folder + "', which holds a run, must be another folder");
+  begin_report_folder(folder, kMark, "a comparison");
   std::error_code ignored;
-  if (std::filesystem::exists(folder + "/compare.json", ignored)) {
-    for (const char* part : {"/frames", "/runs"}) std::filesystem::remove_all(folder + part, ignored);
-    std::filesystem::remove(folder + "/video.mp4", ignored);
-  }
-  prepare_folder(folder);
+  for (const char* part : {"/frames", "/runs"}) std::filesystem::remove_all(folder + part, ignored);
+  std::filesystem::remove(folder + "/video.mp4", ignored);
 }
 
 /// Side by side, as files; written while the next frames are drawn.
@@ -139,6 +139,7 @@ int run_compare(const CompareOptions& options, const std::atomic<bool>& stop, st
   make_room(run_options.out);
   const ComparisonReport report = compared(options, sequence, settings, run_options, stop);
   write_report(report, run_options.out);
+  finish_report_folder(run_options.out, kMark);
   print_report(report, out);
   if (!report.is_stopped && !options.no_video)
     write_video(run_options.out, report.fps, FrameFormat::Png, report.frames.first, report.frames.last);

@@ -111,10 +111,12 @@ int run_tune(const TuneOptions& options, const std::atomic<bool>& stop, std::ost
   if (options.line.threads > 0)
     threads.emplace(global_control::max_allowed_parallelism, options.line.threads);
   const std::string folder = options.line.out.empty() ? "out/" + sequence.name + "-tune" : options.line.out;
-  prepare_folder(folder);
+  constexpr const char* kMark = "tune.json";
+  begin_report_folder(folder, kMark, "a search for thresholds");
   const TuneReport report = tune(sequence, run.settings, {run.options.first_frame, run.options.last_frame},
                                  goal, folder, run.options.progress, stop);
   write_report(report, folder);
+  finish_report_folder(folder, kMark);
   print_report(report, out);
   out << "\nresults in " << folder << "\n";
   return exit_code_of(report);

@@ -14,4 +14,10 @@ void create_folder(const std::string& path);
 /// (files/temporary_files.h).
 void prepare_folder(const std::string& path);
 
+/// A folder for the results of one kind of report, whose mark is a file that every one of them has ("compare.json"), or
+/// MARK.partial from here until finish_report_folder. Other folders with anything in them are not ours: throws
+/// InputError. `kind` in words: "a comparison".
+void begin_report_folder(const std::string& path, const std::string& mark, const std::string& kind);
+void finish_report_folder(const std::string& path, const std::string& mark);
+
 }  // namespace talisman::sequences

@@ -22,6 +22,13 @@ std::string magnitude(double value) {
   return formatted("%.0f", value);
 }
 
+/// Most often; and of what was never drawn by itself, what is known of that.
+std::string why_drawn(const LayerSummary& row) {
+  if (row.renders > 0 || row.is_shadow_map) return row.reasons.text();
+  if (row.merged_renders > 0) return formatted("with those it is merged with, %d times", row.merged_renders);
+  return row.frames_shown > 0 ? "before these frames" : "not in view, or merged";
+}
+
 std::string layer_rows(const Summary& s) {
   const int frames = static_cast<int>(s.frames.size());
   std::string text = formatted("  %-24s %9s %8s %8s %7s %9s %9s %11s  %s\n", "layer", "polygons", "renders",
@@ -34,7 +41,7 @@ std::string layer_rows(const Summary& s) {
       continue;
     }
     const std::string sprite = formatted("%dx%d", row->sprite_px.x, row->sprite_px.y);
-    const std::string why = row->reasons.text();
+    const std::string why = why_drawn(*row);
     text += formatted("  %s %9d %8d %7.1f%% %7s %9.3f %9.3f %11s%s%s\n", name.c_str(), row->polygons,
                       row->renders, 100 * row->update_rate(frames), cost.c_str(), row->mean_geometric_px(),
                       row->max_geometric_px, sprite.c_str(), why.empty() ? "" : "  ", why.c_str());

@@ -97,7 +97,7 @@ TEST_F(TwoRuns, SettingsThatMakeNoSenseAreRefusedByName) {
                    {"'threshold:geo=1': key is 'geo', must be one of geometric-px"});
   expect_bad_input(compare + "threshold:frames=1", {"key is 'frames'"});
   expect_bad_input(compare + "hold:3,geometric_px=2",
-                   {"'hold:3,geometric_px=2': ", "has no effect with policy hold"});
+                   {"'hold:3,geometric_px=2': ", "--geometric-px is no option of policy hold"});
   expect_bad_input(compare + "hold:x", {"'hold:x': ", "a whole number"});
   expect_bad_input(compare + "hold:0", {"'hold:0': ", "hold_frames is 0"});
   expect_bad_input(compare + "threshold:nan", {"'threshold:nan': ", "a finite number"});
