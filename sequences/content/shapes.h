@@ -21,9 +21,9 @@ struct ShapeContent {
   layers::dvec3 size_m{1, 1, 1};  ///< > 0; box: its sides; plane, disc: x and z; sphere: diameters; cylinder:
                                   ///< diameters of its bottom in x and z, and its height in y
   double taper = 1;               ///< cylinder: its top over its bottom, 0 … 1; 0 is a cone
-  int segments =
-      32;  ///< sphere, cylinder and disc: 3 … 512 around; box and plane: 1 … 512 per side; triangles grow with it
-           ///< (sphere, box, plane: with its square), and lights per vertex are the more exact
+  /// sphere, cylinder and disc: 3 … 512 around; box and plane: 1 … 512 per side; triangles grow with it (sphere, box,
+  /// plane: with its square), and lights per vertex are the more exact
+  int segments = 32;
   layers::Material material;
   std::string texture_file;         ///< empty: none
   std::string second_texture_file;  ///< Material::texture2, likewise
