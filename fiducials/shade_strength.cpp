@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -95,30 +96,44 @@ std::vector<PointPair> points_all_over(const LayerState& then, const LayerState&
 
 // ---- how strong ----
 
-/// Of some lights in all of them, per channel or of the luminance.
-dvec3 share_of(std::span<const int> lights, const LayerState& state, const MeanSurface& surface,
-               const SurfacePoint& point, bool per_channel, dvec3& whole) {
-  whole = surface.constant;
-  for (const layers::LightState& light : state.lights) whole += share_of_light(surface, light, point);
-  dvec3 part(0.0);
-  for (const int light : lights)
-    if (static_cast<std::size_t>(light) < state.lights.size())
-      part += share_of_light(surface, state.lights[static_cast<std::size_t>(light)], point);
-  const auto share = [](double a, double b) { return b > 0 ? std::min(a / b, 1.0) : 0.0; };
-  if (!per_channel) return dvec3(share(glm::dot(kLuminance, part), glm::dot(kLuminance, whole)));
-  return {share(part.x, whole.x), share(part.y, whole.y), share(part.z, whole.z)};
-}
+/// The lights on a point, in one of the states.
+class LightsAt {
+ public:
+  LightsAt(const LayerState& state, const MeanSurface& surface, const SurfacePoint& point)
+      : state_(state), surface_(surface), point_(point), whole_(surface.constant) {
+    for (const layers::LightState& light : state.lights) whole_ += share_of_light(surface, light, point);
+  }
+  const dvec3& whole() const { return whole_; }
+
+  /// Of one light in all of them, per channel or of the luminance.
+  dvec3 share_of(int light, bool per_channel) const {
+    if (static_cast<std::size_t>(light) >= state_.lights.size()) return dvec3(0);
+    const dvec3 part = share_of_light(surface_, state_.lights[static_cast<std::size_t>(light)], point_);
+    const auto share = [](double a, double b) { return b > 0 ? std::min(a / b, 1.0) : 0.0; };
+    if (!per_channel) return dvec3(share(glm::dot(kLuminance, part), glm::dot(kLuminance, whole_)));
+    return {share(part.x, whole_.x), share(part.y, whole_.y), share(part.z, whole_.z)};
+  }
+
+ private:
+  const LayerState& state_;
+  const MeanSurface& surface_;
+  const SurfacePoint& point_;
+  dvec3 whole_;
+};
 
 /// By how much a point in full shadow of any of the lights is off.
 double error_at(const PointPair& point, std::span<const int> lights, const LayerState& then,
                 const LayerState& now, const MeanSurface& surface, bool per_channel) {
-  dvec3 change(0.0), whole(0.0), ignored(0.0);
-  for (const int& light : lights) {
-    const std::span<const int> one(&light, 1);
-    change += glm::abs(share_of(one, now, surface, point.now, per_channel, whole) -
-                       share_of(one, then, surface, point.then, per_channel, ignored));
-  }
-  return glm::length(glm::min(whole, dvec3(1.0)) * glm::min(change, dvec3(1.0)));
+  const LightsAt before(then, surface, point.then), after(now, surface, point.now);
+  dvec3 change(0.0);
+  for (const int light : lights)
+    change += glm::abs(after.share_of(light, per_channel) - before.share_of(light, per_channel));
+  return glm::length(glm::min(after.whole(), dvec3(1.0)) * glm::min(change, dvec3(1.0)));
+}
+
+/// Surface, eye and lights as they were: every share is what it was.
+bool nothing_moved(const LayerState& then, const LayerState& now) {
+  return then.lights == now.lights && then.eye() == now.eye() && then.world_from_part == now.world_from_part;
 }
 
 }  // namespace
@@ -129,6 +144,7 @@ Photometric shade_strength_of(const LayerState& then, const LayerState& now, con
   result.why_not = bound.surface_why_not;
   if (!layers::is_built(layers::Effect::ColorWarp) || !bound.surface) return result;
   result.computed = true;
+  if (nothing_moved(then, now)) return result;
   const bool is_flat = shade.plane && shade.plane->node == shade.rigid_node;
   const std::vector<PointPair> points =
       is_flat ? points_on_plane(then, now, shade.plane->normal) : points_all_over(then, now, bound);
