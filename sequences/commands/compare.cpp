@@ -11,7 +11,6 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "sequences/commands/compared_run.h"
-#include "sequences/commands/option_group.h"
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/words.h"
 #include "sequences/experiments/comparison/report.h"
@@ -102,21 +101,14 @@ ComparisonReport compared(const CompareOptions& options, const Sequence& sequenc
 
 void add_compare_options(CLI::App& command, CompareOptions& options) {
   CommandLine& line = options.line;
-  command
-      .add_option("sequence", line.sequence, "name of a sequence, path of its YAML file, or path of a model")
-      ->required();
+  add_sequence_option(command, line);
   command
       .add_option(
           "settings", options.settings,
           "POLICY, POLICY:VALUE or POLICY:KEY=VALUE,…: threshold:1 budget:ms=5,choice=best hold:3; keys "
           "are the options of render")
       ->required();
-  OptionGroup(command, "Run")
-      .option("--out", line.out, "result folder (out/<name>-compare)")
-      .option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run")
-      .option("--size", line.size, "display, WxH pixels")
-      .option("--threads", line.threads, "worker threads; 0: all cores. The bytes do not depend on it")
-      .option("--progress", line.progress, alternatives(kProgressWords))
+  add_run_group(command, line, "out/NAME-compare")
       .flag("--no-video", options.no_video, "no pictures and no video side by side");
   add_content_options(command, line.content);
 }

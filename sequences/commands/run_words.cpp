@@ -23,20 +23,9 @@ std::string in_words(const layers::ivec2& size) {
   return std::to_string(size.x) + "x" + std::to_string(size.y);
 }
 
-void add_sequence(CLI::App& command, CommandLine& line) {
-  command
-      .add_option("sequence", line.sequence, "name of a sequence, path of its YAML file, or path of a model")
-      ->required();
-}
-
 void add_run(CLI::App& command, CommandLine& line) {
-  add_sequence(command, line);
-  OptionGroup(command, "Run")
-      .option("--out", line.out, "result folder", "out/NAME; plans: out/NAME-plan")
-      .option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run", "all")
-      .option("--size", line.size, "display, WxH pixels", in_words(Sequence().display_px))
-      .option("--threads", line.threads, "worker threads; 0: all cores. The bytes do not depend on it", "0")
-      .option("--progress", line.progress, kProgressMeaning, line.progress)
+  add_sequence_option(command, line);
+  add_run_group(command, line, "out/NAME; plans: out/NAME-plan")
       .flag("--quiet", line.quiet, "no progress and no table; warnings and errors alone")
       .flag("--force", line.force, "write into --out though it holds files that are not of a run");
 }
@@ -156,6 +145,22 @@ void add_decisions(CLI::App& command, CommandLine& line) {
 
 }  // namespace
 
+void add_sequence_option(CLI::App& command, CommandLine& line) {
+  command
+      .add_option("sequence", line.sequence, "name of a sequence, path of its YAML file, or path of a model")
+      ->required();
+}
+
+OptionGroup add_run_group(CLI::App& command, CommandLine& line, const std::string& folder) {
+  OptionGroup group(command, "Run");
+  group.option("--out", line.out, "result folder", folder)
+      .option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run", "all")
+      .option("--size", line.size, "display, WxH pixels", in_words(Sequence().display_px))
+      .option("--threads", line.threads, "worker threads; 0: all cores. The bytes do not depend on it", "0")
+      .option("--progress", line.progress, kProgressMeaning, line.progress);
+  return group;
+}
+
 void add_run_options(CLI::App& command, CommandLine& line) {
   add_run(command, line);
   add_content_options(command, line.content);
@@ -163,7 +168,7 @@ void add_run_options(CLI::App& command, CommandLine& line) {
 }
 
 void add_decision_options(CLI::App& command, CommandLine& line) {
-  add_sequence(command, line);
+  add_sequence_option(command, line);
   OptionGroup(command, "Run")
       .option("--out", line.out, "folder of the pictures", "out/NAME-explain")
       .option("--size", line.size, "display, WxH pixels", in_words(Sequence().display_px));

@@ -6,14 +6,15 @@
 #include <string>
 #include <vector>
 
+#include "sequences/commands/option_group.h"
 #include "sequences/commands/options.h"
-
-namespace CLI {
-class App;
-}
 
 namespace talisman::sequences {
 
+/// The sequence; and what every command that runs one takes: where to, which frames, how large. `folder` in words: what
+/// --out is without the option. More may be added to the group.
+void add_sequence_option(CLI::App& command, CommandLine& line);
+OptionGroup add_run_group(CLI::App& command, CommandLine& line, const std::string& folder);
 /// The sequence and the options of `plan`, which `render` has too. `line` must live as long as `command`.
 void add_run_options(CLI::App& command, CommandLine& line);
 /// Those about content, which every command has that opens it.

@@ -82,22 +82,15 @@ int exit_code_of(const TuneReport& report) {
 
 void add_tune_options(CLI::App& command, TuneOptions& options) {
   CommandLine& line = options.line;
-  command
-      .add_option("sequence", line.sequence, "name of a sequence, path of its YAML file, or path of a model")
-      ->required();
+  add_sequence_option(command, line);
   OptionGroup(command, "Goal, one of")
       .option("--flip", options.flip, "FLIP against reference at most this, 0 to 1")
       .option("--psnr", options.psnr, "PSNR against reference at least this, dB")
       .option("--budget-ms", options.budget_ms,
               "modelled drawing time of a frame on talisman-1996 at most this")
       .flag("--mean", options.mean, "the goal is that of the mean of all frames, not of the worst one");
-  OptionGroup(command, "Run")
-      .option("--policy", line.policy, "threshold, lookahead or oracle (the sequence's, else threshold)")
-      .option("--out", line.out, "result folder (out/<name>-tune)")
-      .option("--frames", line.frames, "A-B, inclusive; the frames are those of the full run")
-      .option("--size", line.size, "display, WxH pixels")
-      .option("--threads", line.threads, "worker threads; 0: all cores. The result does not depend on it")
-      .option("--progress", line.progress, alternatives(kProgressWords));
+  add_run_group(command, line, "out/NAME-tune")
+      .option("--policy", line.policy, "threshold, lookahead or oracle", "the sequence's, else threshold");
   add_content_options(command, line.content);
 }
 
