@@ -22,11 +22,24 @@ FrameWriter::~FrameWriter() {
   thread_.join();
 }
 
-void FrameWriter::submit(Job job) {
-  std::unique_lock lock(mutex_);
+void FrameWriter::wait_for_room(std::unique_lock<std::mutex>& lock) {
   changed_.wait(lock, [this] { return waiting_.size() < capacity_ || failure_; });
   rethrow_failure();
-  waiting_.push_back(std::move(job));
+}
+
+void FrameWriter::submit(Job job) {
+  std::promise<Job> ready;
+  ready.set_value(std::move(job));
+  std::unique_lock lock(mutex_);
+  wait_for_room(lock);
+  waiting_.push_back(ready.get_future());
+  changed_.notify_all();
+}
+
+void FrameWriter::submit_prepared(Preparation prepare) {
+  std::unique_lock lock(mutex_);
+  wait_for_room(lock);
+  waiting_.push_back(std::async(std::launch::async, std::move(prepare)));
   changed_.notify_all();
 }
 
@@ -45,18 +58,17 @@ void FrameWriter::work() {
   while (true) {
     changed_.wait(lock, [this] { return !waiting_.empty() || stopping_; });
     if (stopping_) return;
-    Job job = std::move(waiting_.front());
+    std::future<Job> next = std::move(waiting_.front());
     waiting_.pop_front();
     busy_ = true;
     lock.unlock();
     changed_.notify_all();  // there is room for the next
     std::exception_ptr failure;
     try {
-      job();
+      next.get()();  // and its picture is given back before anyone is told that it is done
     } catch (...) {
       failure = std::current_exception();
     }
-    job = nullptr;  // its picture is given back before anyone is told that it is done
     lock.lock();
     busy_ = false;
     if (failure) {

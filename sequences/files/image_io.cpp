@@ -5,19 +5,12 @@
 
 #include "layers/check.h"
 #include "sequences/files/atomic_file.h"
-#include "sequences/files/picture_codec.h"
 
 namespace talisman::sequences {
 namespace {
 
 /// 16384², 0.8 GB as bytes: more is a damaged or hostile header.
 constexpr std::int64_t kMaxPixels = std::int64_t{1} << 28;
-
-/// All goes through the one writer that checks everything.
-void write_encoded(const std::string& path, const EncodedPicture& encoded) {
-  if (!encoded.error.empty()) throw OutputError(path + ": cannot be encoded: " + encoded.error);
-  write_text_atomically(path, {encoded.bytes.begin(), encoded.bytes.end()});
-}
 
 std::uint8_t byte_from_linear(float v) {
   const float clamped = v > 0 ? (v < 1 ? v : 1.0f) : 0.0f;  // NaN becomes 0
@@ -62,18 +55,30 @@ std::unique_ptr<PictureReader> open_image(const std::string& path) {
 
 }  // namespace
 
-void write_png(const std::string& path, const Image8& image) {
-  TALISMAN_CHECK_EQ(image.rgb.size(), static_cast<std::size_t>(image.width) * image.height * 3);
-  write_encoded(path, picture_codec().encode_png(image.width, image.height, image.rgb.data()));
-}
+void write_png(const std::string& path, const Image8& image) { write_encoded(path, encoded_png(image)); }
 
 void write_exr(const std::string& path, const chunker::Frame& frame) {
+  write_encoded(path, encoded_exr(frame));
+}
+
+EncodedPicture encoded_png(const Image8& image) {
+  TALISMAN_CHECK_EQ(image.rgb.size(), static_cast<std::size_t>(image.width) * image.height * 3);
+  return picture_codec().encode_png(image.width, image.height, image.rgb.data());
+}
+
+EncodedPicture encoded_exr(const chunker::Frame& frame) {
   TALISMAN_CHECK_EQ(frame.pixels.size(), static_cast<std::size_t>(frame.width) * frame.height);
   std::vector<float> linear;
   linear.reserve(frame.pixels.size() * 3);
   for (const chunker::Linear16& p : frame.pixels)
     for (const std::uint16_t v : {p.r, p.g, p.b}) linear.push_back(static_cast<float>(v) / chunker::kOne);
-  write_encoded(path, picture_codec().encode_exr(frame.width, frame.height, linear.data()));
+  return picture_codec().encode_exr(frame.width, frame.height, linear.data());
+}
+
+/// All goes through the one writer that checks everything.
+void write_encoded(const std::string& path, const EncodedPicture& encoded) {
+  if (!encoded.error.empty()) throw OutputError(path + ": cannot be encoded: " + encoded.error);
+  write_text_atomically(path, {encoded.bytes.begin(), encoded.bytes.end()});
 }
 
 Image8 to_image8(const chunker::Frame& frame) {

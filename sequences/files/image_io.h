@@ -9,6 +9,7 @@
 
 #include "chunker/composite.h"
 #include "sequences/files/errors.h"
+#include "sequences/files/picture_codec.h"
 
 namespace talisman::sequences {
 
@@ -24,6 +25,11 @@ struct Image8 {
 void write_png(const std::string& path, const Image8& image);
 /// Half-float linear RGB, from the 16-bit linear frame.
 void write_exr(const std::string& path, const chunker::Frame& frame);
+/// The same in two steps: what takes long, and what touches the disk. Any number of threads may encode. write_encoded
+/// throws OutputError, also for what could not be encoded.
+EncodedPicture encoded_png(const Image8& image);
+EncodedPicture encoded_exr(const chunker::Frame& frame);
+void write_encoded(const std::string& path, const EncodedPicture& encoded);
 Image8 to_image8(const chunker::Frame& frame);
 /// PNG, EXR (linear is encoded to sRGB) and whatever else OpenImageIO reads. Grey becomes RGB; where there is
 /// alpha the picture is taken over black. Throws InputError.

@@ -46,18 +46,27 @@ Image8 with_outlines(const FrameReport& report) {
   return image;
 }
 
-void write_picture(const FrameReport& report, const RunOptions& options) {
-  const std::string path = frame_path(options, report.frame);
+/// A frame's picture, ready for the disk.
+struct FramePicture {
+  std::optional<EncodedPicture> encoded;  ///< none: frames are not written
+  double ms = 0;                          ///< it took
+};
+
+FramePicture encoded_picture(const FrameReport& report, const RunOptions& options) {
+  const Stopwatch watch;
+  FramePicture picture;
   switch (options.format) {
     case FrameFormat::Png:
-      write_png(path, options.overlay ? with_outlines(report) : to_image8(report.picture));
+      picture.encoded = encoded_png(options.overlay ? with_outlines(report) : to_image8(report.picture));
       break;
     case FrameFormat::Exr:
-      write_exr(path, report.picture);
+      picture.encoded = encoded_exr(report.picture);
       break;
     case FrameFormat::None:
       break;
   }
+  picture.ms = watch.ms();
+  return picture;
 }
 
 /// The frames of one run, in order.
@@ -138,24 +147,26 @@ class Runner {
     frames_->finish();
   }
 
-  /// The frame is finished by the writer while the next one is drawn. Jobs are copied, pictures are not.
+  /// The frame is finished by the writer while the next ones are drawn and encoded. Jobs are copied, pictures are not.
   void hand_over(FrameReport report) {
     std::optional<FrameQuality> quality;
     if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
     if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
     if (prepared_ && auditor_) auditor_->look(pipeline_, state_, report, *prepared_);
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
-    writer_.submit([this, shared, quality] { finish_frame(*shared, quality); });
+    if (!prepared_) return writer_.submit([this, shared] { finish_frame(line_of(*shared)); });
+    writer_.submit_prepared([this, shared, quality]() -> FrameWriter::Job {
+      FrameLine line = line_of(*shared);
+      line.quality = quality;
+      const auto picture = std::make_shared<const FramePicture>(encoded_picture(*shared, options_));
+      return [this, line, picture] { finish_frame(line, *picture); };
+    });
   }
 
-  void finish_frame(const FrameReport& report, const std::optional<FrameQuality>& quality) {
-    FrameLine line = line_of(report);
-    line.quality = quality;
-    if (prepared_) {
-      const Stopwatch watch;
-      write_picture(report, options_);
-      line.times.io_ms = watch.ms();
-    }
+  void finish_frame(FrameLine line, const FramePicture& picture = {}) {
+    const Stopwatch watch;
+    if (picture.encoded) write_encoded(frame_path(options_, line.frame), *picture.encoded);
+    if (prepared_) line.times.io_ms = picture.ms + watch.ms();
     timing_->write(timing_json(line));
     frames_->write(json_of(line));  // last: with it the frame is complete
     add_line(line);

@@ -103,5 +103,39 @@ TEST(FrameWriter, EndsWithoutFinishAndGivesBackWhatItHeld) {
   EXPECT_EQ(picture.use_count(), 1);
 }
 
+TEST(FrameWriter, PreparationsRunBesideEachOtherAndTheirJobsInOrder) {
+  std::vector<int> done;  // written by the writer alone until it has finished
+  std::promise<void> second_began;
+  std::shared_future<void> begun = second_began.get_future().share();
+  std::atomic<bool> met = false;
+  FrameWriter writer;
+  for (int i = 0; i < 100; ++i)
+    writer.submit_prepared([&, i, begun]() -> FrameWriter::Job {
+      if (i == 0) met = begun.wait_for(std::chrono::seconds(60)) == std::future_status::ready;
+      if (i == 1) second_began.set_value();
+      return [&done, i] { done.push_back(i); };
+    });
+  writer.finish();
+  EXPECT_TRUE(met) << "the first was prepared alone";
+  ASSERT_EQ(done.size(), 100u);
+  for (int i = 0; i < 100; ++i) EXPECT_EQ(done[i], i);
+}
+
+TEST(FrameWriter, AFailedPreparationEndsTheWritingAsItsJobWould) {
+  std::atomic<int> done = 0;
+  FrameWriter writer;
+  const auto submit_all = [&] {
+    for (int i = 0; i < 50; ++i)
+      writer.submit_prepared([&, i]() -> FrameWriter::Job {
+        if (i == 3) throw OutputError("no module");
+        return [&done] { ++done; };
+      });
+    writer.finish();
+  };
+  EXPECT_THROW(submit_all(), OutputError);
+  EXPECT_EQ(done, 3) << "what was before it is done, what is behind it is dropped";
+  EXPECT_THROW(writer.submit_prepared([] { return FrameWriter::Job(); }), OutputError);
+}
+
 }  // namespace
 }  // namespace talisman::sequences
