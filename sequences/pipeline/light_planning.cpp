@@ -13,7 +13,7 @@
 #include "layers/animation.h"
 #include "layers/built_effects.h"
 #include "layers/light_change.h"
-#include "layers/shading.h"
+#include "sequences/pipeline/shade_memory.h"
 
 namespace talisman::sequences {
 
@@ -29,10 +29,26 @@ std::string light_in_words(const layers::Scene& scene, int light) {
   return name.empty() ? "light " + std::to_string(light) : "light '" + name + "'";
 }
 
-/// Do textures that the layer holds fade into each other over time?
-bool blends_vary(const layers::Scene& scene, const layers::Layer& layer) {
-  return layer.is_aggregate() && layers::is_built(layers::Effect::TextureLayers) &&
-         layers::any_part(scene, layer, layers::has_second_texture);
+/// Calls visit(weight over time) for the textures of a layer that the compositor blends.
+template <typename Visit>
+void for_each_blend(const layers::LayerSet& set, int layer, const Visit& visit) {
+  const auto visit_gain = [&](const layers::Layer& held) {
+    if (!held.gain.values.empty()) visit(held.gain);
+  };
+  visit_gain(set.layers[static_cast<std::size_t>(layer)]);
+  for_each_shade(set, layer, [&](const layers::Layer& shade) {
+    if (shade.kind == layers::LayerKind::Texture) visit_gain(shade);
+  });
+}
+
+/// Do textures that are blended inside the layer's sprite fade into each other over time?
+bool blends_vary(const layers::LayerSet& set, const layers::Layer& layer) {
+  bool vary = false;
+  if constexpr (layers::is_built(layers::Effect::TextureLayers))
+    for (const int member : layer.members)
+      for_each_blend(set, member,
+                     [&](const layers::Keys<double>& blend) { vary |= blend.values.size() > 1; });
+  return vary;
 }
 
 /// Of the factors of a member's textures, in all.
@@ -41,13 +57,9 @@ double change_of_blends(const layers::LayerSet& set, const layers::Layer& aggreg
   double largest = 0;
   for (const int member : aggregate.members) {
     double change = 0;
-    for (std::size_t k = static_cast<std::size_t>(member); k < set.layers.size(); ++k) {
-      const layers::Layer& held = set.layers[k];
-      if (held.id != member && held.base != member) break;
-      const bool is_texture = held.id == member || held.kind == layers::LayerKind::Texture;
-      if (is_texture && !held.gain.values.empty())
-        change += std::fabs(layers::value_at(held.gain, now_s) - layers::value_at(held.gain, then_s));
-    }
+    for_each_blend(set, member, [&](const layers::Keys<double>& blend) {
+      change += std::fabs(layers::value_at(blend, now_s) - layers::value_at(blend, then_s));
+    });
     largest = std::max(largest, change);
   }
   return largest;
@@ -78,7 +90,7 @@ layers::LayerBound following_light_and_faces(const Pipeline& pipeline, const lay
   const layers::LightChange change = layers::light_change_of(pipeline.scene, layer, pipeline.moving_carriers);
   bound.surface_why_not = change.why_not;
   if (!layers::is_built(layers::Effect::ColorWarp)) return bound;
-  if (!change.possible() && !blends_vary(pipeline.scene, layer)) return bound;
+  if (!change.possible() && !blends_vary(pipeline.authored.set(), layer)) return bound;
   bound.surface = layers::mean_surface(pipeline.scene, layer);
   if (is_light) bound.surface->constant = layers::dvec3(0.0);
   if (!is_shadow)  // which has the points of its base

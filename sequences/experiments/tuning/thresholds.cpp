@@ -9,6 +9,7 @@
 
 #include "regulator/profile.h"
 #include "sequences/experiments/effect_removal.h"
+#include "sequences/files/content_hash.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pipeline/make_pipeline.h"
 #include "sequences/pipeline/step.h"
@@ -17,19 +18,6 @@
 namespace talisman::sequences {
 
 namespace {
-
-/// FNV-1a.
-class DecisionHash {
- public:
-  void add(std::int64_t value) {
-    for (int byte = 0; byte < 8; ++byte)
-      hash_ = (hash_ ^ (static_cast<std::uint64_t>(value) >> (8 * byte) & 0xff)) * 0x100000001b3;
-  }
-  std::uint64_t value() const { return hash_; }
-
- private:
-  std::uint64_t hash_ = 0xcbf29ce484222325;
-};
 
 /// How much of the display may be wrong, and by how far: what a picture error grows with.
 double suspicion_of(const FrameReport& report, layers::ivec2 display_px) {
@@ -79,7 +67,7 @@ double drawing_ms(const regulator::LayerCost& cost, double depth_complexity) {
       .render_ms;
 }
 
-void add_decisions_to(DecisionHash& hash, const FrameReport& report) {
+void add_decisions_to(ContentHasher& hash, const FrameReport& report) {
   for (const regulator::LayerDecision& d : report.plan.decisions) {
     hash.add(static_cast<int>(d.action));
     hash.add(d.depicts_frame);
@@ -103,7 +91,7 @@ PlannedThresholds plan_of(const Sequence& sequence, const Settings& settings, co
   PlannedThresholds plan;
   plan.thresholds = thresholds;
   plan.layer_ms.assign(sequence.layer_specs.size(), 0);
-  DecisionHash hash;
+  ContentHasher hash;
   const Pipeline pipeline = make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   PipelineState state(pipeline);
   for (int frame = 0; frame <= range.last; ++frame) {
@@ -115,7 +103,7 @@ PlannedThresholds plan_of(const Sequence& sequence, const Settings& settings, co
     plan.suspicion.push_back(suspicion_of(report, settings.view.display_px));
     add_layer_times(report, sequence.layers.layers.size(), plan.layer_ms);
   }
-  plan.decisions = hash.value();
+  plan.decisions = hash.hash().low;
   return plan;
 }
 
