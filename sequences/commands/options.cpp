@@ -103,6 +103,8 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (!line.policy.empty()) options.policy = choice("--policy", line.policy, kPolicyWords);
   apply_thresholds(line, options);
   if (line.hold) options.hold_frames = *line.hold;
+  if (line.blend) options.blend_frames = *line.blend;
+  if (!line.stagger.empty()) options.stagger = choice("--stagger", line.stagger, kSwitchWords);
   if (line.lookahead) options.lookahead.frames = *line.lookahead;
   apply_limits(line, options);
   apply_prediction(line, options);
@@ -163,6 +165,9 @@ void apply_sprites(const CommandLine& line, const Sequence& sequence, Settings& 
   if (line.resolution) settings.placement.resolution_scale = positive("--resolution", *line.resolution, 4);
   settings.render.shading = chosen("--shading", line.shading, kShadingWords, settings.render.shading);
   settings.compression = compression_from(line, sequence, settings.regulator.policy);
+  if (settings.compression && regulator::blends(settings.regulator))
+    throw InputError("blend_frames is " + std::to_string(settings.regulator.blend_frames) +
+                     ", but sprites are compressed, must be 0: what is mixed cannot be kept compressed");
 }
 
 Settings settings_of(const CommandLine& line, const Sequence& sequence) {
