@@ -10,6 +10,7 @@
 #include "sequences/commands/cache_options.h"
 #include "sequences/commands/option_group.h"
 #include "sequences/commands/render.h"
+#include "sequences/commands/reproduce.h"
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/split.h"
 #include "sequences/commands/version.h"
@@ -43,6 +44,7 @@ constexpr std::array kExamples{
     Examples{"diff", "talisman diff out/a/frames out/b/frames", "talisman diff a.png b.png --map out/map"},
     Examples{"export", "talisman export out/carousel --csv", ""},
     Examples{"warps", "talisman warps --object vase", "talisman warps --bound dop14 --out out/warps-dop14"},
+    Examples{"reproduce", "talisman reproduce --quick", "talisman reproduce --only LS97:22 LS97:23"},
     Examples{"accuracy", "talisman accuracy --solvers", "talisman accuracy --regulator carousel"},
 };
 
@@ -73,9 +75,10 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_diff();
   add_exports();
   add_warps();
+  add_reproduce();
   add_accuracy();
-  for (const char* command :
-       {"render", "plan", "audit", "explain", "tune", "compare", "inspect", "init", "warps", "accuracy"})
+  for (const char* command : {"render", "plan", "audit", "explain", "tune", "compare", "inspect", "init",
+                              "warps", "reproduce", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
   add_examples(app_);
 }
@@ -193,6 +196,13 @@ void CommandTree::add_warps() {
       .option("--out", warps_.out, "result folder", warps_.out)
       .option("--progress", warps_.progress, kProgressMeaning, warps_.progress);
   command->callback([this] { exit_code_ = run_warps(warps_, std::cout); });
+}
+
+void CommandTree::add_reproduce() {
+  CLI::App* command = app_.add_subcommand(
+      "reproduce", "what papers say beside what comes out here, with a rule for each row");
+  add_reproduce_options(*command, reproduce_);
+  command->callback([this] { exit_code_ = run_reproduce(reproduce_, std::cout); });
 }
 
 void CommandTree::add_accuracy() {

@@ -16,6 +16,7 @@
 #include "sequences/commands/init.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
+#include "sequences/commands/reproduce.h"
 #include "sequences/commands/tune.h"
 #include "sequences/commands/warps.h"
 #include "sequences/files/errors.h"
@@ -44,6 +45,7 @@ class CommandTree {
   void add_diff();
   void add_exports();
   void add_warps();
+  void add_reproduce();
   void add_accuracy();
 
   CLI::App app_;
@@ -58,6 +60,7 @@ class CommandTree {
   ExportOptions export_;
   std::string documented_;
   WarpsOptions warps_;
+  ReproduceOptions reproduce_;
   AccuracyOptions accuracy_;
   CacheWords cache_;
   int exit_code_ = kSuccess;

@@ -72,6 +72,8 @@ const char* style_words(SeriesStyle style) {
       return "linespoints";
     case SeriesStyle::Steps:
       return "steps";
+    case SeriesStyle::Bars:
+      return "boxes";
   }
   return "lines";
 }
@@ -110,7 +112,9 @@ std::vector<Look> looks_of(const Plot& plot) {
   return looks;
 }
 
-bool has_line(SeriesStyle style) { return style != SeriesStyle::Points && style != SeriesStyle::Cloud; }
+bool has_line(SeriesStyle style) {
+  return style == SeriesStyle::Line || style == SeriesStyle::LinePoints || style == SeriesStyle::Steps;
+}
 /// Those that are drawn first are larger, so that they show where later ones lie on them.
 double marker_size_of(std::size_t index, std::size_t all) {
   constexpr double kLargest = 1, kSmallest = 0.65;
@@ -287,6 +291,7 @@ std::string plot_script(const Plot& plot, const PlotFiles& files) {
             " left top vertical Left reverse samplen 3" +
             legend_rows_words(plot.series.size() + 1, area.height()) + "\nset title " +
             quoted(fitted_text(plot.title, kTextFont_px, title_px)) + "\n";
+  script += "set boxwidth 0.7\nset style fill solid 0.6 noborder\n";
   script += margin_words(area, files) +
             axis_words("x", plot.x, layout.x, area.width(), area.width() / kTic_px) +
             axis_words("y", plot.y, layout.y, area.height(), area.height() / kTic_px);

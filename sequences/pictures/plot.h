@@ -22,8 +22,9 @@ struct PlotPoint {
   double x = 0, y = 0;
 };
 
-/// Cloud: small translucent points, of which there may be thousands.
-enum class SeriesStyle { Line, Points, LinePoints, Steps, Cloud };
+/// Cloud: small translucent points, of which there may be thousands. Bars: from 0 up to each point, 0.7 wide, so that
+/// points one apart stand beside each other.
+enum class SeriesStyle { Line, Points, LinePoints, Steps, Cloud, Bars };
 
 struct PlotSeries {
   std::string name;  ///< in the legend and in the CSV
@@ -42,6 +43,7 @@ struct PlotAxis {
   std::string label;  ///< quantity: "update rate"
   std::string unit;   ///< "px", "ms", "%"; empty: none
   bool logarithmic = false;
+  bool from_zero = false;  ///< 0 is on it; not of logarithmic ones
 };
 
 struct Plot {

@@ -2,6 +2,7 @@
 #include "sequences/pictures/plot_layout.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <string_view>
@@ -235,12 +236,30 @@ dvec2 PlotLayout::pixel(const PlotPoint& point) const {
   return {area_px.x0 + x.share(point.x) * area_px.width(), area_px.y1 - y.share(point.y) * area_px.height()};
 }
 
-PlotLayout plot_layout(const Plot& plot, const PlotFiles& files) {
-  constexpr int kLeft_px = 96, kTop_px = 60, kBottom_px = 68;  // of numbers and words
+namespace {
+
+/// What the axes have to show.
+std::array<std::vector<double>, 2> shown_values(const Plot& plot) {
+  constexpr double kHalfBar = 0.5;  // of a bar with its gap
   std::vector<double> x, y;
   for (const PlotSeries& series : plot.series)
-    for (const PlotPoint& point : series.points)
-      if (drawable(point, plot)) x.push_back(point.x), y.push_back(point.y);
+    for (const PlotPoint& point : series.points) {
+      if (!drawable(point, plot)) continue;
+      x.push_back(point.x), y.push_back(point.y);
+      if (series.style != SeriesStyle::Bars) continue;
+      if (!plot.x.logarithmic) x.push_back(point.x - kHalfBar), x.push_back(point.x + kHalfBar);
+      if (!plot.y.logarithmic) y.push_back(0);
+    }
+  if (plot.x.from_zero && !plot.x.logarithmic) x.push_back(0);
+  if (plot.y.from_zero && !plot.y.logarithmic) y.push_back(0);
+  return {x, y};
+}
+
+}  // namespace
+
+PlotLayout plot_layout(const Plot& plot, const PlotFiles& files) {
+  constexpr int kLeft_px = 96, kTop_px = 60, kBottom_px = 68;  // of numbers and words
+  const auto [x, y] = shown_values(plot);
   PlotLayout layout;
   // At least a fifth of a small picture is left for the curves.
   const int left = std::min(kLeft_px, files.width_px / 3), top = std::min(kTop_px, files.height_px / 4);

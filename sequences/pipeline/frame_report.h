@@ -63,6 +63,7 @@ struct ShadowMapRow {
 
 struct FrameReport {
   int frame = 0;
+  layers::ivec2 display_px{0, 0};
   LayerTable layers;  ///< that the ids of this report mean
   FrameOrder order;
   regulator::FramePlan plan;

@@ -324,6 +324,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared) {
   FrameReport report;
   report.frame = frame;
+  report.display_px = pipeline.settings.view.display_px;
 
   // Decide: no pixel is touched up to and including the plan.
   const Stopwatch plan_watch;

@@ -42,7 +42,14 @@ FrameColumns counters() {
               [](auto& l) -> auto& { return l.reuses; }),
           counted(
               "layers_assessed", "layers", "in view with an old sprite: fitted and judged",
-              [](auto& l) -> auto& { return l.layers_assessed; })};
+              [](auto& l) -> auto& { return l.layers_assessed; }),
+          counted(
+              "mean_geometric_px", "px", "geometric_px of the layers in view, their mean",
+              [](auto& l) -> auto& { return l.error.mean_px; }),
+          counted(
+              "mean_geometric_px_by_pixels", "px",
+              "the same, each layer weighted by the pixels of the display that its sprite covers",
+              [](auto& l) -> auto& { return l.error.mean_by_pixels_px; })};
 }
 
 FrameColumns frame_work() {

@@ -60,6 +60,7 @@ FrameLine line_of(const FrameReport& report) {
     line.pixels.rendered += d.cost.pixels;
     line.layers_in_view += d.action != regulator::Action::Drop;
   }
+  line.error = error_of(report);
   const double sprite_pixels = static_cast<double>(line.pixels.rendered - report.blended_pixels);
   line.passes = {report.shade.shadow_maps_drawn, report.shade.shadow_maps_reused,
                  report.shade.reflections_drawn};

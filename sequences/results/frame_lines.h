@@ -19,6 +19,7 @@
 
 #include "sequences/pictures/quality.h"
 #include "sequences/pipeline/frame_report.h"
+#include "sequences/results/frame_error.h"
 
 namespace talisman::sequences {
 
@@ -70,6 +71,7 @@ struct FrameLine {
   int frame = 0;
   std::string frame_hash;  ///< XXH3-128 of the linear picture, hexadecimal; empty when only planned
   int layers_in_view = 0, renders = 0, reuses = 0, layers_assessed = 0;
+  FrameError error;
   PassCounts passes;
   PolygonCounts polygons;
   PixelCounts pixels;

@@ -24,13 +24,15 @@ void plan_frames(const Sequence& sequence, const Settings& settings, const Frame
   plan_in(make_pipeline(*sequence.scene, sequence.layers, settings), range, show);
 }
 
-Summary planned(const Sequence& sequence, const Settings& settings, const FrameRange& range) {
+Summary planned(const Sequence& sequence, const Settings& settings, const FrameRange& range,
+                const std::function<void(const FrameReport&)>& also) {
   const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, settings);
   Summary summary = start_summary(pipeline, sequence.name);
   summary.planned_only = true;
   plan_in(pipeline, range, [&](const FrameReport& report, const PipelineState& state) {
     add_decisions(summary, report, state);
     summary.frames.push_back(line_of(report));
+    if (also) also(report);
   });
   return summary;
 }

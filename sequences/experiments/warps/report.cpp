@@ -54,25 +54,7 @@ std::string csv_of_quality(const WarpReport& report) {
 }
 
 Plot plot_of(const WarpReport& report, const RateFigure& figure) {
-  // A curve and its maximum-norm (or refined) partner share a colour, the partner is dashed.
-  constexpr std::array order = {Curve::trn,  Curve::so,    Curve::aff,  Curve::per,  Curve::pers,
-                                Curve::iso,  Curve::per2,  Curve::trni, Curve::soi,  Curve::affi,
-                                Curve::peri, Curve::pers2, Curve::isoi, Curve::per2i};
-  constexpr std::size_t kColors = order.size() / 2;
-  Plot plot;
-  plot.title = title_of(report, figure);
-  plot.x = {"error threshold", "px", true};
-  plot.y = {"update rate", "%", false};
-  for (std::size_t place = 0; place < order.size(); ++place)
-    for (const UpdateCurve& curve : figure.curves) {
-      if (curve.curve != order[place]) continue;
-      PlotSeries series{text_of(curve.curve), {}, SeriesStyle::LinePoints};
-      series.color = static_cast<int>(place % kColors);
-      for (std::size_t t = 0; t < report.thresholds.size(); ++t)
-        series.points.push_back({report.thresholds[t], 100.0 * curve.renders[t] / kMotion_frames});
-      plot.series.push_back(series);
-    }
-  return plot;
+  return update_rate_plot(title_of(report, figure), report.thresholds, figure.curves);
 }
 
 // --- The page
@@ -183,6 +165,29 @@ Page page_of(const WarpReport& report) {
 }
 
 }  // namespace
+
+Plot update_rate_plot(const std::string& title, const std::vector<double>& thresholds_px,
+                      const std::vector<UpdateCurve>& curves) {
+  // A curve and its maximum-norm (or refined) partner share a colour, the partner is dashed.
+  constexpr std::array order = {Curve::trn,  Curve::so,    Curve::aff,  Curve::per,  Curve::pers,
+                                Curve::iso,  Curve::per2,  Curve::trni, Curve::soi,  Curve::affi,
+                                Curve::peri, Curve::pers2, Curve::isoi, Curve::per2i};
+  constexpr std::size_t kColors = order.size() / 2;
+  Plot plot;
+  plot.title = title;
+  plot.x = {"error threshold", "px", true};
+  plot.y = {"update rate", "%", false};
+  for (std::size_t place = 0; place < order.size(); ++place)
+    for (const UpdateCurve& curve : curves) {
+      if (curve.curve != order[place]) continue;
+      PlotSeries series{text_of(curve.curve), {}, SeriesStyle::LinePoints};
+      series.color = static_cast<int>(place % kColors);
+      for (std::size_t t = 0; t < thresholds_px.size(); ++t)
+        series.points.push_back({thresholds_px[t], 100.0 * curve.renders[t] / kMotion_frames});
+      plot.series.push_back(series);
+    }
+  return plot;
+}
 
 void write_report(const WarpReport& report, const std::string& dir) {
   write_text_atomically(dir + "/warps.csv", csv_of_rates(report));

@@ -14,11 +14,16 @@
 #include <string>
 
 #include "sequences/experiments/warps/measured.h"
+#include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {
 
 /// Writes all files into the folder, which is there. Throws OutputError.
 void write_report(const WarpReport& report, const std::string& dir);
+
+/// Update rate against error threshold, in the axes of the paper's figures.
+Plot update_rate_plot(const std::string& title, const std::vector<double>& thresholds_px,
+                      const std::vector<UpdateCurve>& curves);
 
 void print_report(const WarpReport& report, std::ostream& out);
 

@@ -78,7 +78,8 @@ TEST(FrameLine, HasItsEntriesInThisOrder) {
   EXPECT_EQ(
       json_of(line),
       R"({"schema":"talisman.frame/1","frame":3,"frame_hash":"0123456789abcdef","layers_in_view":0,)"
-      R"("renders":2,"reuses":0,"layers_assessed":0,"shadow_maps_drawn":0,"shadow_maps_reused":0,)"
+      R"("renders":2,"reuses":0,"layers_assessed":0,"mean_geometric_px":0.0,"mean_geometric_px_by_pixels":0.0,)"
+      R"("shadow_maps_drawn":0,"shadow_maps_reused":0,)"
       R"("reflections_drawn":0,"polygons_rendered":100,"polygons_reference":400,"pixels_rendered":0,)"
       R"("pixels_reference":0,"pixels_filled":1234567890123,"pixels_composited":0,)"
       R"("pixels_in_registers":0,"chunks_rendered":0,)"
