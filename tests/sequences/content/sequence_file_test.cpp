@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/content/asset_paths.h"
+#include "sequences/content/default_view.h"
 #include "sequences/content/sequence_file.h"
 #include "tests/sequences/sequence_lines.h"
 
@@ -199,7 +200,7 @@ TEST(LoadSequence, WhatIsNoMapOrNotThereIsRefused) {
   for (const std::string text : {"", "- 1\n- 2\n", "hello", "\t: [", "a: &a [*a]\n", "? [1]\n: 2\n"})
     EXPECT_NE(message_of([&] { load_sequence(folder.write("odd.yaml", text)); }), "") << text;
   EXPECT_THAT(message_of([] { load_sequence("no-such-thing"); }),
-              HasSubstr("sequences are: canyon, canyon/background"));
+              HasSubstr("canyon, canyon/1997, canyon/background"));
   EXPECT_THAT(message_of([&] { load_sequence(folder.write("bare.yaml", "frames: 1\n")); }),
               HasSubstr("shows nothing"));
 }
@@ -234,7 +235,7 @@ TEST(LoadSequence, PartsOfAModelAreTakenByGlobs) {
   };
   const Sequence s = load_sequence(folder.write("far.yaml", text("parts: ['*fa?']")));
   ASSERT_EQ(s.scene->parts.size(), 1u);
-  const layers::WorldBounds bounds = layers::bounds_of_scene(*s.scene);
+  const layers::WorldBounds bounds = bounds_of_scene(*s.scene);
   EXPECT_NEAR(bounds.lo.x, -2, 1e-6);
   EXPECT_NEAR(bounds.hi.x, 2, 1e-6);
   EXPECT_NEAR(bounds.hi.y, 1, 1e-6);
