@@ -247,8 +247,10 @@ const Choice* choice_of(std::span<const Choice> choices, int part) {
   return found == choices.end() ? nullptr : &*found;
 }
 
-PartInputs own_inputs(const ShadeInputs& inputs, int part, const DrawList& list) {
+PartInputs own_inputs(const layers::SceneFrame& frame, const ShadeInputs& inputs, int part,
+                      const DrawList& list) {
   PartInputs own;
+  if (layers::is_built(layers::Effect::MovingPicture) && !frame.picture_frames.empty()) own.frame = &frame;
   if (const Reflection* reflection = choice_of(inputs.reflections, part))
     own.reflection = &list.reflections[reflection - inputs.reflections.data()];
   if (const TextureBlend* blend = choice_of(inputs.texture_blends, part)) own.texture_blend = blend->factors;
@@ -277,7 +279,7 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
     list.polygons_in += mesh.triangle_count();
     if (!view) continue;
     const Shader shader =
-        make_shader(prepared, part, list.lights, options, inputs, own_inputs(inputs, index, list));
+        make_shader(prepared, part, list.lights, options, inputs, own_inputs(frame, inputs, index, list));
     if (shader.opacity == 0) continue;
     list.batches.push_back({shader, {}});
     const bool flat = shader.lit && (options.shading == Shading::Flat || mesh.normals.empty());

@@ -59,6 +59,10 @@ std::map<int, bool> textures_of(const layers::Scene& scene, bool filtered) {
       if (texture >= 0 && texture < static_cast<int>(scene.textures.size()))
         used[texture] = used[texture] || coarser;
   }
+  if constexpr (layers::is_built(layers::Effect::MovingPicture))
+    for (const layers::MovingPicture& picture : scene.moving_pictures)
+      if (const auto first = used.find(picture.texture); first != used.end())
+        for (const int texture : picture.textures) used[texture] = first->second;
   return used;
 }
 

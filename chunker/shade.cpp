@@ -5,6 +5,7 @@
 
 #include "chunker/shadow_map.h"
 #include "layers/check.h"
+#include "layers/moving_picture.h"
 #include "layers/shading.h"
 
 namespace talisman::chunker {
@@ -13,8 +14,11 @@ namespace {
 using layers::dvec3;
 using layers::vec3;
 
-const Pyramid* pyramid_of(const PreparedScene& prepared, int texture) {
+/// The pyramid that is looked up for a texture of the material; null: none.
+const Pyramid* pyramid_of(const PreparedScene& prepared, const PartInputs& own, int texture) {
   const auto& pyramids = prepared.impl().pyramids;
+  if (layers::is_built(layers::Effect::MovingPicture) && own.frame != nullptr && texture >= 0)
+    texture = layers::texture_at(*own.frame, texture);
   if (texture < 0 || texture >= static_cast<int>(pyramids.size()) || pyramids[texture].empty())
     return nullptr;
   return &pyramids[texture];
@@ -46,10 +50,11 @@ void choose_second_texture(const Pyramid* pyramid, bool has_uvs, float blend1, f
 }
 
 void choose_textures(const PreparedScene& prepared, const layers::Material& material, bool has_uvs,
-                     ShadeTerm term, layers::vec2 blend, Shader& shader) {
+                     ShadeTerm term, const PartInputs& own, Shader& shader) {
+  const layers::vec2 blend = own.texture_blend.value_or(material.texture_blend);
   const bool whole = term == ShadeTerm::Full || term == ShadeTerm::Base;
-  const Pyramid* second = pyramid_of(prepared, material.texture2);
-  choose_texture(pyramid_of(prepared, material.texture), has_uvs, whole || term == ShadeTerm::Texture1,
+  const Pyramid* second = pyramid_of(prepared, own, material.texture2);
+  choose_texture(pyramid_of(prepared, own, material.texture), has_uvs, whole || term == ShadeTerm::Texture1,
                  shader);
   if (second == nullptr) return;
   if (whole)
@@ -67,9 +72,9 @@ void choose_alpha(const layers::Material& material, const layers::Mesh& mesh, Sh
 }
 
 void choose_emission(const PreparedScene& prepared, const layers::Material& material,
-                     const layers::Mesh& mesh, Shader& shader) {
+                     const layers::Mesh& mesh, const PartInputs& own, Shader& shader) {
   if constexpr (!layers::is_built(layers::Effect::EmissiveMap)) return;
-  const Pyramid* pyramid = pyramid_of(prepared, material.emissive_texture);
+  const Pyramid* pyramid = pyramid_of(prepared, own, material.emissive_texture);
   if (pyramid == nullptr || all_zero(shader.emissive)) return;
   if (mesh.uvs.empty() && mesh.emissive_uvs.empty())
     shader.emissive *= unpremultiplied(pyramid->mean());
@@ -302,8 +307,7 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
   shader.max_anisotropy = shader.mipmaps ? options.max_anisotropy : 1;
   shader.opacity = clamp_unit(material.opacity);
   shader.opaque = shader.opacity == 1;
-  choose_textures(prepared, material, !mesh.uvs.empty(), inputs.term,
-                  own.texture_blend.value_or(material.texture_blend), shader);
+  choose_textures(prepared, material, !mesh.uvs.empty(), inputs.term, own, shader);
   choose_alpha(material, mesh, shader);
   choose_reflection(material, inputs.term, own.reflection, shader);
   const bool shown = contributes(shader, material, inputs);
@@ -313,7 +317,7 @@ Shader make_shader(const PreparedScene& prepared, const layers::Part& part, cons
   if (shown && !material.unlit) choose_lighting(material, !mesh.normals.empty(), options, inputs, shader);
   choose_normal_map(prepared, material, mesh, shader);
   if (!colored) shader.emissive = splat(0);
-  choose_emission(prepared, material, mesh, shader);
+  choose_emission(prepared, material, mesh, own, shader);
   shader.layout = choose_layout(shader, colored && !mesh.colors.empty());
   TALISMAN_CHECK_LE(shader.layout.count, kMaxAttributes);
   return shader;

@@ -181,6 +181,7 @@ struct Shader {
 struct PartInputs {
   const ReflectionLookup* reflection = nullptr;  ///< null: none
   std::optional<layers::vec2> texture_blend;     ///< empty: that of the material
+  const layers::SceneFrame* frame = nullptr;  ///< whose moving pictures are shown; null: their first frames
 };
 
 /// The shader of what `inputs.term` shows of a part. A part that does not contribute to the term gets a black

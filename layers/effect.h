@@ -40,6 +40,7 @@ enum class Effect {
   Morphing,         ///< some drawn part has morph targets
   LightFalloff,     ///< some light fades with distance
   NormalMap,        ///< some lit part has a normal texture and tangents
+  MovingPicture,    ///< some drawn part shows an image sequence or a video
 };
 inline constexpr std::array kAllEffects = {
     Effect::Texture,           Effect::MipFilter,      Effect::Lighting,        Effect::SpecularHighlight,
@@ -47,7 +48,7 @@ inline constexpr std::array kAllEffects = {
     Effect::SpriteCompression, Effect::VisibilitySort, Effect::ColorWarp,       Effect::ShadowMap,
     Effect::ShadowLayer,       Effect::SpecularLayer,  Effect::ReflectionMap,   Effect::ReflectionLayer,
     Effect::TextureLayers,     Effect::EmissiveMap,    Effect::Morphing,        Effect::LightFalloff,
-    Effect::NormalMap};
+    Effect::NormalMap,         Effect::MovingPicture};
 
 /// In the order of kAllEffects.
 inline constexpr std::array<std::string_view, kAllEffects.size()> kEffectNames = {
@@ -55,7 +56,7 @@ inline constexpr std::array<std::string_view, kAllEffects.size()> kEffectNames =
     "skinning",         "layer_resolution", "motion_blur",  "sprite_compression", "visibility_sort",
     "color_warp",       "shadow_map",       "shadow_layer", "specular_layer",     "reflection_map",
     "reflection_layer", "texture_layers",   "emissive_map", "morphing",           "light_falloff",
-    "normal_map"};
+    "normal_map",       "moving_picture"};
 
 /// "texture", "mip_filter", …
 constexpr std::string_view name(Effect effect) { return kEffectNames[static_cast<std::size_t>(effect)]; }

@@ -5,6 +5,7 @@
 
 #include "layers/animation.h"
 #include "layers/light_change.h"
+#include "layers/moving_picture.h"
 #include "layers/scene.h"
 #include "layers/shading.h"
 #include "layers/vectors.h"
@@ -48,6 +49,16 @@ std::string fading_light(const Scene& scene) {
       return "light '" + light.name + "' fades with distance";
   }
   return {};
+}
+
+std::string call_of_moving_picture(const Scene& scene, const Part& part) {
+  if (part.material < 0) return {};
+  const Material& material = scene.materials[part.material];
+  const int shown = moving_picture_of(scene, material);
+  if (shown < 0) return {};
+  const MovingPicture& picture = scene.moving_pictures[shown];
+  return "material '" + material.name + "' shows " + std::to_string(picture.frames.size()) + " frames of '" +
+         picture.name + "'";
 }
 
 /// Why this part calls for the effect; empty if it does not.
@@ -200,7 +211,10 @@ std::string call_of(const Context& context, const Layer& layer, Effect effect) {
       break;
   }
   for (const int part : layer.parts)
-    if (std::string why = call_of(scene, scene.parts[part], effect); !why.empty()) return why;
+    if (std::string why = effect == Effect::MovingPicture ? call_of_moving_picture(scene, scene.parts[part])
+                                                          : call_of(scene, scene.parts[part], effect);
+        !why.empty())
+      return why;
   return {};
 }
 
@@ -279,6 +293,8 @@ std::string why_not(const Scene& scene, std::span<const Layer> layers, const Run
     case Effect::NormalMap:
       return run.per_pixel ? "no lit part has a normal texture and tangents"
                            : "the run does not shade per pixel";
+    case Effect::MovingPicture:
+      return "no material shows an image sequence or a video";
     case Effect::LayerResolution:
       return "every layer has the display's resolution";
     case Effect::MotionBlur:

@@ -33,7 +33,8 @@ class PartNames {
     }
     std::vector<int> parts;
     for (std::size_t i = 0; i < scene_.parts.size(); ++i)
-      if (glob_matches(glob, scene_.parts[i].name)) parts.push_back(static_cast<int>(i));
+      if (!scene_.parts[i].is_seam && glob_matches(glob, scene_.parts[i].name))  // seams by their names alone
+        parts.push_back(static_cast<int>(i));
     return parts;
   }
 

@@ -9,6 +9,7 @@
 
 #include "layers/animation.h"
 #include "layers/check.h"
+#include "layers/seam.h"
 #include "layers/vectors.h"
 
 namespace talisman::layers {
@@ -344,6 +345,13 @@ std::vector<Layer> bodies_of(const Scene& scene, const Layer& layer) {
   return bodies;
 }
 
+/// A layer of these of its parts.
+Layer with_parts(const Scene& scene, const Layer& layer, bool seams) {
+  Layer some = layer;
+  std::erase_if(some.parts, [&](int part) { return scene.parts[part].is_seam != seams; });
+  return some;
+}
+
 /// What is to have a polyhedron of its own; one: the whole layer.
 std::vector<Layer> bounded_apart(const Scene& scene, const Layer& layer) {
   const std::optional<bool>& each_part = layer.preferences.bound_each_part;
@@ -377,10 +385,8 @@ bool has_vertices(const Scene& scene, const Layer& layer) {
                      [&](int part) { return !scene.meshes[scene.parts[part].mesh].positions.empty(); });
 }
 
-}  // namespace
-
-LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind, int material_points) {
-  const std::vector<Layer> apart = bounded_apart(scene, layer);
+LayerBound bound_apart(const Scene& scene, const Layer& layer, BoundKind kind, int material_points,
+                       const std::vector<Layer>& apart) {
   if (apart.size() == 1) return bound_of_whole(scene, layer, kind, material_points);
   LayerBound bound;
   bound.kind = kind;
@@ -391,6 +397,16 @@ LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind ki
     bound.bodies.push_back(bound_of_whole(scene, body, kind, material_points));
   }
   return bound;
+}
+
+}  // namespace
+
+LayerBound make_layer_bound(const Scene& scene, const Layer& layer, BoundKind kind, int material_points) {
+  if (!has_seams(scene, layer))
+    return bound_apart(scene, layer, kind, material_points, bounded_apart(scene, layer));
+  std::vector<Layer> apart = bounded_apart(scene, with_parts(scene, layer, false));
+  apart.push_back(with_parts(scene, layer, true));
+  return bound_apart(scene, layer, kind, material_points, apart);
 }
 
 void add_light_samples(const Scene& scene, int material_points, LayerBound& bound) {

@@ -10,6 +10,7 @@
 #include "layers/animation.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
+#include "layers/moving_picture.h"
 
 namespace talisman::layers {
 
@@ -130,6 +131,7 @@ SceneFrame Scene::at(double t_s) const {
   frame.lights.reserve(lights.size());
   for (const Light& light : lights) frame.lights.push_back(light_at(light, frame.world_from_node));
   if (is_built(Effect::Morphing)) frame.morph_weights = morph_weights_at(*this, t_s);
+  if (is_built(Effect::MovingPicture)) frame.picture_frames = picture_frames_at(*this, t_s);
   return frame;
 }
 

@@ -71,6 +71,22 @@ struct Texture {
   bool one_level = false;         ///< minified: the nearest level alone instead of a mix of two
 };
 
+/// A texture that changes over time: an image sequence or a video [LS97 1]. Where a material names `texture`, the
+/// frame of the time is looked up in its place (layers/moving_picture.h).
+struct MovingPicture {
+  std::string name;
+  int texture = -1;     ///< index into Scene::textures: its first frame; that of one moving picture only
+  double fps = 24;      ///< > 0; frames per second, where they have no times of their own
+  double start_s = 0;   ///< when its first frame begins, which is shown before, too
+  int frame_count = 1;  ///< ≥ 1; of the source
+  bool loop = false;    ///< begins again at its end; else its last frame holds
+  /// Of a variable rate: when each frame begins, seconds after start_s, from 0, strictly increasing; else empty.
+  std::vector<double> starts_s{};
+  double length_s = 0;          ///< of a variable rate: when the last frame ends, above its start
+  std::vector<int> frames{};    ///< numbers of the frames that are held, ascending
+  std::vector<int> textures{};  ///< as many: their indices into Scene::textures
+};
+
 struct Material {
   std::string name;
   vec3 base_color{0.8f, 0.8f, 0.8f};
@@ -220,6 +236,8 @@ struct Part {
   int mesh = -1;
   int material = -1;
   int skin = -1;  ///< index into Scene::skins; -1: rigid
+  /// A copy of what lies behind a shared edge in another layer, so that no crack opens there (layers/seam.h).
+  bool is_seam = false;
 };
 
 struct CameraState {
@@ -253,11 +271,14 @@ struct SceneFrame {
   std::vector<LightState> lights;  ///< one per light
   /// One per node; without any where no mesh of the scene has morph targets.
   std::vector<std::vector<double>> morph_weights;
+  /// Of each moving picture the number of the frame that is shown; without any where the scene has none.
+  std::vector<int> picture_frames;
 };
 
 struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Texture> textures;
+  std::vector<MovingPicture> moving_pictures;
   std::vector<Material> materials;
   std::vector<Skin> skins;
   std::vector<Node> nodes;

@@ -185,6 +185,40 @@ std::string defect_of(const Scene&, const Texture& texture) {
   return broken(text("4 · width · height = ", bytes), texture.rgba.size(), " bytes");
 }
 
+bool strictly_grows(const auto& values) {
+  return std::adjacent_find(values.begin(), values.end(), [](auto a, auto b) { return !(a < b); }) ==
+         values.end();
+}
+
+std::string held_frames_defect(const Scene& scene, const MovingPicture& picture) {
+  const std::size_t held = picture.frames.size();
+  if (held == 0 || held != picture.textures.size())
+    return broken("at least 1, and as many", held, " frames and ", picture.textures.size(), " textures");
+  if (!strictly_grows(picture.frames)) return broken("numbers of frames grow", "frames");
+  for (const int texture : picture.textures)
+    if (const std::string defect = index_in("texture", texture, scene.textures.size(), false);
+        !defect.empty())
+      return defect;
+  if (picture.texture == picture.textures.front()) return {};
+  return broken(text("that of its first frame, ", picture.textures.front()), "texture ", picture.texture);
+}
+
+std::string defect_of(const Scene& scene, const MovingPicture& picture) {
+  if (!(picture.fps > 0) || !std::isfinite(picture.fps))
+    return broken("finite, above 0", "fps ", picture.fps);
+  if (!std::isfinite(picture.start_s)) return finite("start", picture.start_s);
+  if (picture.frame_count < 1) return broken("at least 1", "frame count ", picture.frame_count);
+  if (const std::string defect = held_frames_defect(scene, picture); !defect.empty()) return defect;
+  const std::vector<double>& starts = picture.starts_s;
+  if (starts.empty()) return {};
+  if (starts.size() != static_cast<std::size_t>(picture.frame_count))
+    return broken(text("as many as frames, ", picture.frame_count), starts.size(), " starts");
+  if (starts.front() == 0 && strictly_grows(starts) && picture.length_s > starts.back() &&
+      std::isfinite(picture.length_s))
+    return {};
+  return broken("starts of frames grow from 0 to below the finite length", "starts");
+}
+
 std::string range_defect(const char* what, double value, double low, double high) {
   if (value >= low && value <= high) return {};
   return broken(text("from ", low, " to ", high), what, " ", value);
@@ -413,6 +447,7 @@ std::string scene_defect(const Scene& scene) {
 std::string first_defect(const Scene& scene) {
   // All are looked at, so each check guards its own indices and may not rely on the ones before it.
   return first_of({first_in(scene, "mesh", scene.meshes), first_in(scene, "texture", scene.textures),
+                   first_in(scene, "moving picture", scene.moving_pictures),
                    first_in(scene, "material", scene.materials), first_in(scene, "node", scene.nodes),
                    first_in(scene, "skin", scene.skins), first_in(scene, "track of node", scene.tracks),
                    first_in(scene, "light", scene.lights), first_in(scene, "camera", scene.cameras),

@@ -12,6 +12,7 @@
 #include "layers/animation.h"
 #include "layers/built_effects.h"
 #include "layers/casting.h"
+#include "layers/moving_picture.h"
 #include "layers/shading.h"
 
 namespace talisman::layers {
@@ -299,6 +300,21 @@ void append_blends(const SceneFrame& frame, const LayerSet& set, const Layer& ag
   }
 }
 
+/// The moving pictures on what the layer mirrors; an aggregate mirrors what its members do.
+void add_mirrored_pictures(const SceneFrame& frame, const LayerSet& set, const Layer& layer,
+                           LayerState& state) {
+  if (!is_built(Effect::MovingPicture) || frame.picture_frames.empty()) return;
+  const auto add_of = [&](const Layer& mirror) {
+    for (const int id : mirror.reflected) add_shown_pictures(frame, set.layers[id].parts, state.pictures);
+  };
+  add_of(layer);
+  for (const int member : layer.members)
+    for (std::size_t k = member; k < set.layers.size(); ++k) {
+      if (set.layers[k].id != member && set.layers[k].base != member) break;
+      add_of(set.layers[k]);
+    }
+}
+
 std::vector<dmat4> influence_matrices(const SceneFrame& frame, const LayerSet& set, const Layer& layer) {
   std::vector<dmat4> matrices;
   if (looks_up_shadows(layer)) matrices = part_matrices(frame, set.casting_parts);
@@ -325,6 +341,7 @@ void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<
     if (state.layer != layer.id) continue;  // an aggregate that does not exist now
     if (layer.base >= 0 && !state.lights.empty()) state.lights = lights_on(frame, layer);
     if (mirrors_lit_parts(*frame.scene, set, layer)) state.lights = frame.lights;
+    add_mirrored_pictures(frame, set, layer, state);
     if (!looks_up_shadows(layer) && layer.reflected.empty() && !is_highlight(layer) &&
         !blends_textures(set, layer))
       continue;

@@ -408,6 +408,7 @@ std::vector<int> casting_parts(const Scene& scene, std::span<const Layer> layers
     const std::vector<int> own = parts_with(scene, layer, casts_shadow);
     parts.insert(parts.end(), own.begin(), own.end());
   }
+  std::erase_if(parts, [&](int part) { return scene.parts[part].is_seam; });  // its own layer casts it
   std::sort(parts.begin(), parts.end());
   return parts;
 }

@@ -8,6 +8,7 @@
 
 #include "layers/built_effects.h"
 #include "layers/clip.h"
+#include "layers/moving_picture.h"
 #include "layers/shading.h"
 
 namespace talisman::layers {
@@ -64,6 +65,7 @@ void forget(LayerState& state) {
   state.lit_places.clear();
   state.world_from_influence.clear();
   state.traces.clear();
+  state.pictures.clear();
   state.world_from_receiver = dmat4(1.0);
   state.screen_bounds_px = {};
   state.touches_display = state.clipped = false;
@@ -112,7 +114,8 @@ dmat4 clip_from_world(const CameraState& camera, ivec2 display_px) {
 bool LayerState::same_pixels(const LayerState& other) const {
   return layer == other.layer && camera == other.camera && view == other.view &&
          world_from_part == other.world_from_part && lights == other.lights &&
-         world_from_influence == other.world_from_influence && motion_px == other.motion_px;
+         world_from_influence == other.world_from_influence && pictures == other.pictures &&
+         motion_px == other.motion_px;
 }
 
 FrameCapture::FrameCapture(const SceneFrame& frame, const View& view)
@@ -192,6 +195,7 @@ void FrameCapture::capture(const Layer& layer, const LayerBound& bound, LayerSta
   state.view = view_;
   state.camera = frame_.camera;
   append_part_matrices(frame_, layer.parts, state.world_from_part);
+  if (is_built(Effect::MovingPicture)) add_shown_pictures(frame_, layer.parts, state.pictures);
   const bool any_light = is_built(Effect::Lighting) && !frame_.lights.empty();
   if (any_light && any_part(*frame_.scene, layer, is_lit)) state.lights = lights_on(frame_, layer);
   capture_points(bound, state);

@@ -72,6 +72,13 @@ struct LitPlace {
   dvec3 color{0, 0, 0};  ///< shaded, linear light 0 … 1
 };
 
+/// A frame of a moving picture.
+struct ShownPicture {
+  int picture = -1;  ///< index into Scene::moving_pictures
+  int frame = 0;     ///< of the source
+  bool operator==(const ShownPicture&) const = default;
+};
+
 struct LayerState {
   int layer = -1;
   double time_s = 0;
@@ -102,10 +109,11 @@ struct LayerState {
   std::vector<dmat4> world_from_influence;  ///< as world_from_part, of the parts that cast or are mirrored
   dmat4 world_from_receiver{1.0};           ///< space of the traces
   std::vector<ShadeTrace> traces;
+  std::vector<ShownPicture> pictures;  ///< by index: on its own parts and, where it mirrors others, on theirs
 
   bool in_view() const { return !screen_bounds_px.empty(); }
   /// True if the two states would be rendered to the same pixels: same layer, camera, view, part matrices,
-  /// influences, motion and lights, compared exactly. The time is not compared. NaN is never the same.
+  /// influences, pictures, motion and lights, compared exactly. The time is not compared. NaN is never the same.
   bool same_pixels(const LayerState& other) const;
 };
 

@@ -39,7 +39,8 @@ double smear_px(const fiducials::Sampling& s) {
 
 double benefit_px(const LayerAssessment& layer, double unmended_px) {
   if (nothing_to_gain(layer)) return 0;
-  if (!has_sound_fit(layer) || due_by_minimum_rate(layer)) return kMostBenefitPx;
+  if (!has_sound_fit(layer) || due_by_minimum_rate(layer) || !layer.new_picture.empty())
+    return kMostBenefitPx;
   const fiducials::Report& f = layer.fiducials;
   const layers::FiducialWeights& w = layer.preferences.importance;
   // A weight of zero silences its fiducial even where that is unbounded.

@@ -200,8 +200,9 @@ void decide_candidates(std::span<const LayerAssessment> assessments, const Regul
     const LayerAssessment& layer = layer_with(candidate.layer, assessments);
     const bool settled = settles(layer, options);
     const std::string detail =
-        (settled ? settle_reason(layer)
-                 : comparison("benefit", candidate.benefit_px, ">", options.budget.cutoff_px, "px")) +
+        (!layer.new_picture.empty() ? layer.new_picture
+         : settled                  ? settle_reason(layer)
+                   : comparison("benefit", candidate.benefit_px, ">", options.budget.cutoff_px, "px")) +
         at_resolution(layer.resolution);
     LayerDecision& decision = decisions[&layer - assessments.data()];
     if (is_chosen(taken.choice, candidate.layer)) {

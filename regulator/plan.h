@@ -67,6 +67,7 @@ struct LayerAssessment {
   int frames_short_of_area = 0;  ///< frames in a row in which it was deferred for want of pixels or chunks
   int frames_at_rest = 0;  ///< frames in a row, this one the last, in which its state was that of the frame
                            ///< before; counted only with settle_frames
+  std::string new_picture{};  ///< what its sprite shows an old frame of, in words; empty: nothing
 };
 
 /// The budget of a frame that is not limited.

@@ -11,12 +11,14 @@ const HardwareProfile& talisman_1996() {
       40e6,
       320e6,
       1.5e6,
+      132e6,
       {
           {"renderer", 40e6, "pixels/s", "[LS97] footnote 1, planned prototype", true},
           {"compositor", 320e6, "pixels/s", "[LS97] footnote 1, planned prototype", true},
           {"chunk", 32, "texels, each side", "[LS97 1.1]", true},
           {"sub-pixel grid", 4, "samples, each axis", "Peddie, Chasing Pixels: Microsoft's Talisman", true},
           {"polygons", 1.5e6, "1/s", "20,000-polygon scenes (Peddie) at 75 Hz", false},
+          {"upload", 132e6, "bytes/s", "PCI, 32 bit at 33 MHz, at its peak: the card's bus", false},
           {"display width", 1344, "pixels", "directx.com graphics archive; other sources 1024", false},
           {"display height", 1024, "pixels", "directx.com graphics archive; other sources 768", false},
           {"refresh", 75, "Hz", "directx.com graphics archive; other sources 72", false},
@@ -29,12 +31,14 @@ const HardwareProfile& talisman_1996() {
 }
 
 ModelledTime modelled_time(const HardwareProfile& profile, std::int64_t polygons,
-                           std::int64_t pixels_rendered, std::int64_t pixels_composited) {
+                           std::int64_t pixels_rendered, std::int64_t pixels_composited,
+                           std::int64_t bytes_uploaded) {
   ModelledTime time;
   time.render_ms = 1e3 * std::max(static_cast<double>(polygons) / profile.polygons_per_s,
                                   static_cast<double>(pixels_rendered) / profile.renderer_pixels_per_s);
   time.composite_ms = 1e3 * static_cast<double>(pixels_composited) / profile.compositor_pixels_per_s;
-  time.frame_ms = std::max(time.render_ms, time.composite_ms);
+  time.upload_ms = 1e3 * static_cast<double>(bytes_uploaded) / profile.upload_bytes_per_s;
+  time.frame_ms = std::max({time.render_ms, time.composite_ms, time.upload_ms});
   return time;
 }
 

@@ -5,7 +5,8 @@
 ///
 ///   render    = max(polygons / polygon rate, filled pixels / renderer pixel rate)
 ///   composite = composited pixels / compositor pixel rate
-///   frame     = max(render, composite): the compositor runs in parallel with the renderer [LS97 1.1]
+///   upload    = bytes of new frames of moving pictures / upload rate
+///   frame     = max(render, composite, upload): they run in parallel [LS97 1.1]
 ///
 /// A functional model: no pipeline stalls, no memory contention.
 
@@ -29,6 +30,7 @@ struct HardwareProfile {
   double renderer_pixels_per_s = 0;
   double compositor_pixels_per_s = 0;
   double polygons_per_s = 0;
+  double upload_bytes_per_s = 0;
   std::vector<ProfileNumber> numbers;  ///< the same and the rest, as printed
 };
 
@@ -36,10 +38,11 @@ struct HardwareProfile {
 const HardwareProfile& talisman_1996();
 
 struct ModelledTime {
-  double render_ms = 0, composite_ms = 0, frame_ms = 0;
+  double render_ms = 0, composite_ms = 0, upload_ms = 0, frame_ms = 0;
 };
 
 ModelledTime modelled_time(const HardwareProfile& profile, std::int64_t polygons,
-                           std::int64_t pixels_rendered, std::int64_t pixels_composited);
+                           std::int64_t pixels_rendered, std::int64_t pixels_composited,
+                           std::int64_t bytes_uploaded = 0);
 
 }  // namespace talisman::regulator

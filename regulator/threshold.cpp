@@ -97,6 +97,7 @@ bool may_fade_out(const LayerAssessment& old, const RegulatorOptions& options) {
 
 std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& options) {
   if (nothing_to_gain(layer)) return {};
+  if (!layer.new_picture.empty()) return layer.new_picture;  // within no bound, however small
   if (!(options.thresholds.geometric_px > 0)) return "changed, geometric threshold 0 px";
   std::string violation = first_violation(layer, options.thresholds);
   if (violation.empty() && due_by_minimum_rate(layer))

@@ -120,7 +120,7 @@ int run_compare(const CompareOptions& options, const std::atomic<bool>& stop, st
   if (options.line.threads < 0)
     throw InputError("--threads is " + std::to_string(options.line.threads) +
                      ", must be at least 0 (0: all cores)");
-  const Sequence sequence = load_with_warnings(options.line.sequence, options.line.content);
+  const Sequence sequence = load_with_warnings(options.line);
   RunOptions run_options;
   const std::vector<ComparedSettings> settings = compared_settings(options, sequence, run_options);
   run_options.out = options.line.out.empty() ? "out/" + sequence.name + "-compare" : options.line.out;

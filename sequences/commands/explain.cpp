@@ -88,7 +88,7 @@ int explain_folder(const ExplainOptions& options, std::ostream& out) {
 
 int explain_sequence(const ExplainOptions& options, std::ostream& out) {
   const int frame = frame_asked_for(options);
-  const Sequence sequence = load_with_warnings(options.line.sequence, options.line.content);
+  const Sequence sequence = load_with_warnings(options.line);
   const ResolvedRun run = resolve(options.line, sequence, true);
   if (frame >= sequence.frames)
     throw InputError("--frame is " + std::to_string(frame) + ", must be at most " +

@@ -225,6 +225,14 @@ ContentOptions content_options(const ContentWords& words) {
   if (words.exposure) options.exposure_lx = positive("--exposure", *words.exposure, kLargest);
   if (words.turntable) options.turntable_s = positive("--turntable", *words.turntable, kLargest);
   options.stage = !words.no_stage;
+  if (!words.seam.empty()) options.seam = choice("--seam", words.seam, kSeamWords);
+  return options;
+}
+
+ContentOptions content_options(const CommandLine& line) {
+  ContentOptions options = content_options(line.content);
+  options.geometric_px = line.geometric_px;
+  if (!line.size.empty()) options.display_px = display_from(line.size);
   return options;
 }
 
@@ -241,11 +249,23 @@ void say_content(const std::vector<std::string>& warnings, const std::vector<std
   for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
 }
 
-Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words) {
-  Sequence sequence = load_sequence(name_or_path, content_options(words));
+namespace {
+
+Sequence load_and_say(const std::string& name_or_path, const ContentOptions& options, bool strict) {
+  Sequence sequence = load_sequence(name_or_path, options);
   say_content(sequence.warnings, sequence.notes);
-  require_none(sequence.warnings, words.strict, sequence.file);
+  require_none(sequence.warnings, strict, sequence.file);
   return sequence;
+}
+
+}  // namespace
+
+Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words) {
+  return load_and_say(name_or_path, content_options(words), words.strict);
+}
+
+Sequence load_with_warnings(const CommandLine& line) {
+  return load_and_say(line.sequence, content_options(line), line.content.strict);
 }
 
 ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {

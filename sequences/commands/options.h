@@ -18,6 +18,7 @@ namespace talisman::sequences {
 struct ContentWords {
   std::string assets;  ///< a folder
   std::optional<double> exposure, turntable;
+  std::string seam;  ///< "none", "auto"
   bool no_stage = false;
   bool strict = false;  ///< warnings of the content are errors
 };
@@ -60,8 +61,12 @@ void require_none(const std::vector<std::string>& warnings, bool strict, const s
 /// On stderr, "warning: " or "note: " before each.
 void say_content(const std::vector<std::string>& warnings, const std::vector<std::string>& notes);
 
+/// The same with those options of a run on which its content depends.
+ContentOptions content_options(const CommandLine& line);
+
 /// Reads the sequence and says its warnings on stderr, "warning: " before each. Throws InputError.
 Sequence load_with_warnings(const std::string& name_or_path, const ContentWords& words = {});
+Sequence load_with_warnings(const CommandLine& line);
 
 /// Checks every value and joins it with the sequence's defaults. Throws InputError that names option, value
 /// and rule, or the effect that the run calls for and this build lacks.

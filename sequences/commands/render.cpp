@@ -61,7 +61,7 @@ std::string advice_text(const Sequence& sequence, const ResolvedRun& run, const 
 
 int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool>& stop, std::ostream& out) {
   using oneapi::tbb::global_control;
-  const Sequence sequence = load_with_warnings(line.sequence, line.content);
+  const Sequence sequence = load_with_warnings(line);
   const ResolvedRun resolved = resolve(line, sequence, plan_only);
   std::optional<global_control> threads;
   if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);

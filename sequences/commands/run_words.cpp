@@ -196,6 +196,10 @@ void add_content_options(CLI::App& command, ContentWords& words) {
               "the file's, else 1")
       .option("--turntable", words.turntable, "seconds for one turn of the orbiting camera",
               "models: 20; sequences: the file's, else 5")
+      .option("--seam", words.seam,
+              "beyond the edges that they share layers are drawn as far as --geometric-px lets a crack open "
+              "(auto), or not (none)",
+              "the file's, else none")
       .flag("--no-stage", words.no_stage, "a bare model stands before black, on no ground");
 }
 

@@ -11,7 +11,7 @@ namespace talisman::sequences {
 int run_split(const CommandLine& line, const std::string& layer, std::ostream& out) {
   if (!line.out.empty())
     throw InputError("--out is '" + line.out + "', must not be given with --split, which writes nothing");
-  const Sequence sequence = load_with_warnings(line.sequence, line.content);
+  const Sequence sequence = load_with_warnings(line);
   const ResolvedRun run = resolve(line, sequence, true);
   const SplitSequence split = split_layer(sequence, layer);
   Settings apart = run.settings;

@@ -98,7 +98,7 @@ int run_tune(const TuneOptions& options, const std::atomic<bool>& stop, std::ost
   using oneapi::tbb::global_control;
   const TuneGoal goal = goal_of(options);
   choice("--progress", options.line.progress, kProgressWords);
-  const Sequence sequence = load_with_warnings(options.line.sequence, options.line.content);
+  const Sequence sequence = load_with_warnings(options.line);
   const ResolvedRun run = resolved_for_tuning(options.line, sequence);
   std::optional<global_control> threads;
   if (options.line.threads > 0)

@@ -17,6 +17,7 @@
 #include "layers/layer.h"
 #include "layers/polyhedron.h"
 #include "regulator/plan.h"
+#include "sequences/content/sequence.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/image_io.h"
 #include "sequences/files/progress.h"
@@ -54,6 +55,8 @@ inline constexpr Words<layers::OrderGroup, 3> kOrderGroupWords{
      {"foreground", layers::OrderGroup::Foreground}}};
 
 inline constexpr Words<Cycles, 2> kCyclesWords{{{"merge", Cycles::Merge}, {"keep", Cycles::Keep}}};
+
+inline constexpr Words<Seam, 2> kSeamWords{{{"none", Seam::None}, {"auto", Seam::Auto}}};
 
 inline constexpr Words<Compositor, 2> kCompositorWords{
     {{"talisman", Compositor::Talisman}, {"extended", Compositor::Extended}}};

@@ -59,26 +59,49 @@ std::string fetch_command(const std::string& name) {
   return folder + "sequences/fetch-assets " + name;
 }
 
-std::string resolve_asset(const std::string& path, const std::string& sequence_file, int line) {
+namespace {
+
+/// What `path` means, if it is there. `is_there` says so of a path, `what` names what is asked for.
+template <typename IsThere>
+std::string resolve(const std::string& path, const std::string& sequence_file, int line, const char* what,
+                    const IsThere& is_there) {
   std::error_code error;
   const std::string package = package_of(path);
   if (!package.empty()) {
     const fs::path folder = assets_folder() / package;
     const fs::path found = folder.string() + path.substr(package.size() + 1);
-    if (fs::is_regular_file(found, error)) return found.string();
+    if (is_there(found)) return found.string();
     if (fs::is_directory(folder, error))
-      throw InputError("'" + path + "' is not in package " + package + ", rule: a file of the package",
-                       sequence_file, line);
+      throw InputError(
+          "'" + path + "' is not in package " + package + ", rule: a " + what + " of the package",
+          sequence_file, line);
     throw InputError("'" + path + "' is not there, rule: content is fetched first, by " +
                          fetch_command(fetch_name(sequence_file)),
                      sequence_file, line);
   }
   const fs::path found =
       fs::path(path).is_absolute() ? fs::path(path) : fs::path(sequence_file).parent_path() / path;
-  if (!fs::is_regular_file(found, error))
-    throw InputError("'" + path + "' is not there, rule: a file, as package:/path or relative to this file",
-                     sequence_file, line);
+  if (!is_there(found))
+    throw InputError(
+        "'" + path + "' is not there, rule: a " + what + ", as package:/path or relative to this file",
+        sequence_file, line);
   return found.string();
+}
+
+}  // namespace
+
+std::string resolve_asset(const std::string& path, const std::string& sequence_file, int line) {
+  return resolve(path, sequence_file, line, "file", [](const fs::path& found) {
+    std::error_code error;
+    return fs::is_regular_file(found, error);
+  });
+}
+
+std::string resolve_folder(const std::string& path, const std::string& sequence_file, int line) {
+  return resolve(path.empty() ? "." : path, sequence_file, line, "folder", [](const fs::path& found) {
+    std::error_code error;
+    return fs::is_directory(found, error);
+  });
 }
 
 std::string content_name(const std::string& path, const std::string& sequence_file) {

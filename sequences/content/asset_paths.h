@@ -24,6 +24,9 @@ std::string fetch_command(const std::string& name);
 /// of a package the error names the command that fetches it.
 std::string resolve_asset(const std::string& path, const std::string& sequence_file, int line = 0);
 
+/// The same of a folder; empty: that of the sequence file.
+std::string resolve_folder(const std::string& path, const std::string& sequence_file, int line = 0);
+
 /// What results call the file `path` that belongs to `sequence_file`: "package:/path" in the folder of assets, else
 /// the path from the sequence file's folder. The same on every machine.
 std::string content_name(const std::string& path, const std::string& sequence_file);

@@ -10,6 +10,7 @@
 
 #include "layers/layer.h"
 #include "sequences/content/default_view.h"
+#include "sequences/content/images/place_images.h"
 #include "sequences/content/nearest_word.h"
 #include "sequences/files/quoted.h"
 #include "sequences/import/texture_io.h"
@@ -33,6 +34,8 @@ int carrier_of(const BuiltScene& built, const Motion& motion) {
   return found->second;
 }
 
+}  // namespace
+
 /// The node (with one below it for a spin, so that both motions add up) that carries something; returns the
 /// lowest.
 int add_motion(BuiltScene& built, const std::string& name, const Motion& motion) {
@@ -44,6 +47,8 @@ int add_motion(BuiltScene& built, const std::string& name, const Motion& motion)
   scene.tracks.push_back({node, *motion.spin});
   return node;
 }
+
+namespace {
 
 template <typename T>
 void append(std::vector<T>& to, const std::vector<T>& from) {
@@ -296,9 +301,11 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   if (recipe.terrain) add_terrain(built.scene, *recipe.terrain);
   for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);
   for (const ModelRecipe& model : recipe.models) add_model(built, model, recipe.assets);
+  add_images_in_world(built, recipe.images, recipe.times);
   if (recipe.camera) add_camera(built, *recipe.camera, recipe.turntable_s);
   add_lights(built, recipe.lights);
   add_default_view(built.scene, recipe.turntable_s);
+  add_images_on_screen(built, recipe.images, recipe.times);
   for (layers::Light& light : built.scene.lights) light.color /= static_cast<float>(recipe.exposure_lx);
   return built;
 }

@@ -23,10 +23,14 @@ struct BuiltScene {
   layers::Scene scene;
   std::vector<LayerTag> layer_tags;
   std::vector<std::string> warnings;
+  std::vector<std::string> notes = {};          ///< what was decided where the file leaves it open
   std::vector<std::string> files = {};          ///< that were opened for it: Sequence::content_files
-  std::map<std::string, int> carriers = {};     ///< the node of each shape that can carry others, by its name
+  std::map<std::string, int> carriers = {};     ///< the node of each shape and image, by its name
   std::vector<ModelCamera> model_cameras = {};  ///< of which the recipe may choose one
 };
+
+/// The node, with its motion, that carries something; throws InputError for a carrier that is not there.
+int add_motion(BuiltScene& built, const std::string& name, const Motion& motion);
 
 /// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of
 /// default_view.h; cameras and lights inside its models are used where it says so. Throws InputError for an asset that

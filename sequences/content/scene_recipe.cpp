@@ -59,12 +59,14 @@ const Table<SceneRecipe>& scene_keys() {
           .key("background", &S::background, color(), "", "colour behind all layers")
           .key("shapes", &S::shapes, list_of(shape_keys()), "", "simple bodies that need no file")
           .key("models", &S::models, list_of(model_keys(), 0), "", "bodies from files")
+          .key("images", &S::images, list_of(image_keys()), "",
+               "2-D layers: pictures, sequences of pictures, videos")
           .key("assets", &S::assets, folders(), "",
                "where else files that models name may lie, besides their own folders and that of this file")
           .otherwise("none")
           .key("terrain", &S::terrain, map_of(terrain_keys()), "", "ground out of pictures")
           .key("sky", &S::sky, map_of(sky_keys()), "", "one part, unlit")
-          .at_least_one_of({"shapes", "models", "terrain", "sky"}, "it shows nothing")
+          .at_least_one_of({"shapes", "models", "images", "terrain", "sky"}, "it shows nothing")
           .key("camera", &S::camera, map_of(camera_keys()), "", "from where it is seen")
           .otherwise("an orbit around everything")
           .key("turntable", &S::turntable_s, number(kPositive), "s",

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sequences/content/ground.h"
+#include "sequences/content/images/image_recipe.h"
 #include "sequences/content/lights.h"
 #include "sequences/content/motion.h"
 #include "sequences/content/shapes.h"
@@ -55,6 +56,8 @@ struct CameraRecipe {
 struct SceneRecipe {
   std::vector<ShapeRecipe> shapes;
   std::vector<ModelRecipe> models;
+  std::vector<ImageRecipe> images;
+  ShownTimes times;  ///< of the sequence: which frames of images are read
   std::optional<TerrainContent> terrain;
   std::optional<SkyContent> sky;
   std::optional<CameraRecipe> camera;
@@ -65,7 +68,7 @@ struct SceneRecipe {
   double turntable_s = 5;           ///< one turn of the orbiting camera, where there is no other
 };
 
-/// The keys background, shapes, models, assets, terrain, sky, camera, turntable, lights and exposure of a sequence.
+/// The keys background, shapes, models, images, assets, terrain, sky, camera, turntable, lights and exposure of a sequence.
 const Table<SceneRecipe>& scene_keys();
 
 }  // namespace talisman::sequences

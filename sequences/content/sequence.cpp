@@ -7,9 +7,11 @@
 #include "sequences/content/asset_paths.h"
 #include "sequences/content/bare_model.h"
 #include "sequences/content/factoring/factoring.h"
+#include "sequences/content/images/place_images.h"
 #include "sequences/content/nearest_word.h"
 #include "sequences/content/own_settings.h"
 #include "sequences/content/scene_builder.h"
+#include "sequences/content/seams.h"
 #include "sequences/content/sequence_file.h"
 #include "sequences/files/quoted.h"
 
@@ -65,6 +67,7 @@ void finish(Sequence& sequence, BuiltScene built, std::vector<layers::LayerSpec>
   sequence.layers = layers::factor(built.scene, specs);
   sequence.layer_specs = std::move(specs);
   sequence.warnings.insert(sequence.warnings.end(), built.warnings.begin(), built.warnings.end());
+  sequence.notes.insert(sequence.notes.end(), built.notes.begin(), built.notes.end());
   sequence.content_files.insert(sequence.content_files.end(), built.files.begin(), built.files.end());
   if (const std::vector<std::string> parts = parts_in_no_layer(built.scene, sequence.layers); !parts.empty())
     sequence.warnings.push_back(sequence.file + ": " + std::to_string(parts.size()) +
@@ -92,11 +95,13 @@ void apply(const ContentOptions& options, const std::string& path, SceneRecipe& 
   if (options.turntable_s) recipe.turntable_s = *options.turntable_s;
 }
 
-/// The layers of a file that leaves them to us. What of the order was not always seen so is a warning.
-Factoring found_layers(Sequence& sequence, const BuiltScene& built, const AutoLayers& options) {
-  Factoring found =
-      study({built.scene, tagged_specs(built.scene, built.layer_tags), own_settings(sequence)}, options)
-          .chosen;
+/// The layers of a file that leaves them to us; images keep their own. What of the order was not always seen so is a
+/// warning.
+Factoring found_layers(Sequence& sequence, const BuiltScene& built, const std::vector<ImageRecipe>& images,
+                       const AutoLayers& options) {
+  std::vector<layers::LayerSpec> kept = tagged_specs(built.scene, built.layer_tags);
+  add_image_layers(images, kept);
+  Factoring found = study({built.scene, std::move(kept), own_settings(sequence)}, options).chosen;
   for (const SeenPair& seen : found.order)
     if (seen.hidden > 0) sequence.warnings.push_back(sequence.file + ": " + hidden_in_words(found, seen));
   return found;
@@ -105,23 +110,27 @@ Factoring found_layers(Sequence& sequence, const BuiltScene& built, const AutoLa
 Sequence load_yaml(const std::string& path, const ContentOptions& options) {
   SequenceFile file = read_sequence_file(path);
   apply(options, path, file.recipe);
+  file.recipe.times = {file.settings.fps, file.settings.frames, file.settings.display_px};
   BuiltScene built = build_scene(file.recipe);
   if (const std::string defect = layers::first_defect(built.scene); !defect.empty())
     throw InputError(defect, path);
   if (built.scene.parts.empty())
-    throw InputError("shows nothing, rule: at least one of shapes, models, terrain and sky", path);
+    throw InputError("shows nothing, rule: at least one of shapes, models, images, terrain and sky", path);
   std::vector<layers::LayerSpec> specs;
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   Sequence sequence = std::move(file.settings);
   sequence.content = options;
   std::vector<SpecPair> found_order;
   if (file.auto_layers) {
-    Factoring found = found_layers(sequence, built, *file.auto_layers);
+    Factoring found = found_layers(sequence, built, file.recipe.images, *file.auto_layers);
     specs = std::move(found.specs);
     found_order = found.pairs();
-  } else if (specs.empty()) {
-    specs = specs_of_model(built.scene, built.layer_tags);
+  } else {
+    if (specs.empty()) specs = specs_of_model(built.scene, built.layer_tags);
+    add_image_layers(file.recipe.images, specs);
   }
+  if (options.seam.value_or(sequence.seam) == Seam::Auto)
+    add_seams(built.scene, seam_options(sequence), specs);
   finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) {
     file.settings.file = path;

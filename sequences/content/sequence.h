@@ -23,6 +23,12 @@ namespace talisman::sequences {
 /// Some eleven hours at 24 frames a second.
 inline constexpr int kLongestRun_frames = 1'000'000;
 
+/// Are layers that share an edge drawn beyond it, so that no crack opens (layers/seam.h)?
+enum class Seam {
+  None,  ///< as the scene is; terrain has its own overlap
+  Auto,  ///< as far as the threshold lets warps open it
+};
+
 /// What is said on the command line about content. What is said goes before the keys of a sequence file.
 struct ContentOptions {
   std::vector<std::string> assets = {};  ///< folders in whose trees files that models name may lie
@@ -30,6 +36,10 @@ struct ContentOptions {
       {};  ///< > 0; the illuminance that shows 1 on white that faces the light
   std::optional<double> turntable_s = {};  ///< > 0; one turn of the orbiting camera
   bool stage = true;                       ///< bare models stand on a ground, before a backdrop
+  std::optional<Seam> seam = {};
+  /// Of the run, where it is not the file's: how far seams reach depends on both.
+  std::optional<double> geometric_px = {};
+  std::optional<layers::ivec2> display_px = {};
   bool operator==(const ContentOptions&) const = default;
 };
 
@@ -43,6 +53,7 @@ struct Sequence {
   int frames = 0;   ///< ≥ 1
   double fps = 24;  ///< > 0; frame f is at f / fps seconds
   layers::ivec2 display_px{1024, 1024};
+  Seam seam = Seam::None;
   std::shared_ptr<const layers::Scene> scene;
   std::vector<layers::LayerSpec> layer_specs;  ///< what the author, or the model, asks for
   layers::LayerSet layers;                     ///< layers::factor of both

@@ -83,6 +83,9 @@ Table<SequenceFile> film_keys() {
       .required()
       .key("fps", setting(&Sequence::fps), number({0, 1000, true}), "frames/s", "how fast")
       .key("display", setting(&Sequence::display_px), whole_pair(1, kMaxDisplay_px), "px", "width, height")
+      .key(
+          "seam", setting(&Sequence::seam), choice<Seam>({{"none", Seam::None}, {"auto", Seam::Auto}}), "",
+          "`auto`: layers that share an edge are drawn beyond it, as far as `geometric_px` lets a crack open")
       .custom("packages", texts(0).type, packages, "",
               "Debian packages with the content, in one line: `[a, b]`")
       .otherwise("none");

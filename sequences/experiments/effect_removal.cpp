@@ -68,7 +68,11 @@ void remove_normal_maps(Scene& scene) {
   for (Material& material : scene.materials) material.normal_texture = -1;
 }
 
+/// They stand still at their first frame.
+void remove_moving_pictures(Scene& scene) { scene.moving_pictures.clear(); }
+
 void remove_textures(Scene& scene) {
+  remove_moving_pictures(scene);
   remove_emissive_maps(scene);
   remove_normal_maps(scene);
   for (Material& material : scene.materials) flatten_textures(scene, material);
@@ -350,6 +354,8 @@ void (*scene_change(Effect effect))(layers::Scene&) {
       return remove_falloff;
     case Effect::NormalMap:
       return remove_normal_maps;
+    case Effect::MovingPicture:
+      return remove_moving_pictures;
     default:
       return nullptr;
   }

@@ -6,7 +6,7 @@
 /// `without_effect` changes as little else as it can; what must go along:
 ///
 ///   texture             surfaces keep the mean colour and the mean opacity of their textures; mip_filter,
-///                       texture_layers, emissive_map and normal_map go too
+///                       texture_layers, emissive_map, normal_map and moving_picture go too
 ///   mip_filter          the finest level of the textures, filtered bilinearly
 ///   lighting            materials are unlit: their base colour as it is. Highlights, shadows, emission, the
 ///                       falloff of lamps, normal maps and the colour warp go too, and the shade layers that held them
@@ -15,6 +15,7 @@
 ///   skinning            parts keep the pose of the first frame and follow the node that carries them
 ///   emissive_map        emission has the mean colour of its texture
 ///   normal_map          surfaces have the normals of their vertices
+///   moving_picture      image sequences and videos stand still at their first frame
 ///   morphing            parts keep the shape of the first frame
 ///   light_falloff       lamps are everywhere as bright as they are at 1 m
 ///   layer_resolution    all sprites, also of shade layers, at the display's resolution

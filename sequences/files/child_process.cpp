@@ -2,11 +2,16 @@
 #include "sequences/files/child_process.h"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <cstring>
 #include <sstream>
 
@@ -45,10 +50,44 @@ class Actions {
   posix_spawn_file_actions_t actions_;
 };
 
-std::string read_tail(int fd) {
+/// Wall time per processor time: the machine may have other work.
+constexpr int kPatienceWithChild = 10;
+
+/// The child has run for less than a millisecond: what it can take before is nothing.
+void limit(pid_t pid, const ChildLimits& limits) {
+  const auto set = [pid](auto resource, std::int64_t most) {
+    const rlimit both{static_cast<rlim_t>(most), static_cast<rlim_t>(most)};
+    if (most > 0) ::prlimit(pid, resource, &both, nullptr);
+  };
+  set(RLIMIT_CPU, limits.seconds);
+  set(RLIMIT_AS, limits.memory_bytes);
+  set(RLIMIT_FSIZE, limits.file_bytes);
+}
+
+/// False: nothing came until the deadline, if there is one.
+bool wait_for_output(int fd, const ChildLimits& limits, std::chrono::steady_clock::time_point deadline) {
+  if (limits.seconds == 0) return true;
+  pollfd waiting{fd, POLLIN, 0};
+  for (;;) {
+    const auto left =
+        std::chrono::duration_cast<std::chrono::milliseconds>(deadline - std::chrono::steady_clock::now());
+    const int ready = ::poll(&waiting, 1, static_cast<int>(std::max<std::int64_t>(left.count(), 0)));
+    if (ready >= 0 || errno != EINTR) return ready > 0;
+  }
+}
+
+/// Until the end, or until the child has to be ended.
+std::string read_tail(int fd, pid_t pid, const ChildLimits& limits, bool& timed_out) {
+  const auto deadline =
+      std::chrono::steady_clock::now() + kPatienceWithChild * std::chrono::seconds(limits.seconds);
   std::string tail;
   std::array<char, 4096> buffer;
   for (;;) {
+    if (!wait_for_output(fd, limits, deadline)) {
+      timed_out = true;
+      ::kill(pid, SIGKILL);
+      return tail;
+    }
     const ssize_t n = ::read(fd, buffer.data(), buffer.size());
     if (n < 0 && errno == EINTR) continue;
     if (n <= 0) return tail;
@@ -85,8 +124,12 @@ ChildResult run_child(const std::vector<std::string>& arguments, const ChildOpti
     result.output = arguments[0] + ": " + std::strerror(error);
   } else {
     result.started = true;
-    result.output = read_tail(ends[0]);
+    limit(pid, options.limits);
+    result.output = read_tail(ends[0], pid, options.limits, result.timed_out);
     result.exit_code = wait_for_exit(pid);
+    result.timed_out =
+        result.timed_out || (options.limits.seconds > 0 &&
+                             (result.exit_code == 128 + SIGXCPU || result.exit_code == 128 + SIGKILL));
   }
   ::close(ends[0]);
   return result;

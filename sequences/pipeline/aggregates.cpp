@@ -10,6 +10,7 @@
 #include "layers/aggregate.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
+#include "layers/seam.h"
 #include "layers/shading.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_planning.h"
@@ -163,8 +164,10 @@ std::vector<layers::Occluder> occluders_in_view(const Pipeline& pipeline,
     const LayerState& state = states[layer.id];
     if (!state.touches_display || layer.base >= 0) continue;  // shade layers follow their bases
     occluders.push_back({layer.id, layer.group, {}});
-    if (with_bodies)
-      occluders.back().bodies = layers::convex_bodies(pipeline.authored.bound(layer.id), state.world_points);
+    if (!with_bodies) continue;
+    occluders.back().bodies = layers::convex_bodies(pipeline.authored.bound(layer.id), state.world_points);
+    std::vector<std::span<const layers::dvec3>>& bodies = occluders.back().bodies;
+    if (!bodies.empty() && layers::has_seams(pipeline.scene, layer)) bodies.pop_back();
   }
   return occluders;
 }

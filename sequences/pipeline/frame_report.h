@@ -77,6 +77,7 @@ struct FrameReport {
   chunker::CompositeCounters composite;
   std::optional<CompressionReport> compression;  ///< of the sprites drawn for this frame, and of its reads
   std::int64_t sprite_bytes = 0;                 ///< of the sprites shown, as they are stored
+  std::optional<std::int64_t> upload_bytes;      ///< of frames of moving pictures, where the scene has any
   ShadeCounters shade;                           ///< passes behind shadows and reflections, as planned
   std::vector<ShadowMapRow> shadow_maps;         ///< one per light that has a map
   double depth_complexity = 1;                   ///< by which a budget of ms was divided

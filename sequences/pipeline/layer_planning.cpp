@@ -7,6 +7,7 @@
 
 #include "fiducials/fiducials.h"
 #include "layers/built_effects.h"
+#include "layers/moving_picture.h"
 #include "layers/predict.h"
 #include "layers/shade_state.h"
 #include "regulator/policies.h"
@@ -307,6 +308,8 @@ LayerAssessment assess_sprite(const Pipeline& pipeline, const LayerTable& layers
   assessment.in_view = assessment.has_sprite = true;
   assessment.frames_since_render = frames_since_render;
   assessment.identical = now.same_pixels(then);
+  if (layers::is_built(layers::Effect::MovingPicture) && then.pictures != now.pictures)
+    assessment.new_picture = layers::new_picture_in_words(pipeline.scene, then.pictures, now.pictures);
   const layers::Correspondences matched =
       layers::correspond(then, now, layers.bound(now.layer).hull, frames_since_render);
   // An empty sprite holds nothing of what is in view now, wherever its points went.

@@ -130,6 +130,7 @@ struct PipelineState {
   ShadePlan reference_shades;         ///< of the policy `reference`: the yardstick of what is saved
   ShadowMapStore shadow_maps;
   DepthMemory depth;
+  std::vector<int> uploaded;  ///< by moving picture: the frame that the texture memory holds, or -1
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once
   std::vector<CapturedFrame> forgotten;   ///< were captured; the next ones are captured in their memory
   int now = 0;                            ///< the frame that is planned: what lies ahead may be a prediction

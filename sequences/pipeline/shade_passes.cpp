@@ -304,7 +304,9 @@ std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const Layer& 
 
 chunker::RenderResult draw_in_one_pass(const Drawing& drawing, std::span<const int> geometry_layers,
                                        const SpritePlacement& placement) {
-  return draw(drawing, all_terms_of(drawing.layers.set(), geometry_layers, drawing.frame.time_s), placement);
+  Contents contents = all_terms_of(drawing.layers.set(), geometry_layers, drawing.frame.time_s);
+  std::erase_if(contents.parts, [&](int part) { return drawing.frame.scene->parts[part].is_seam; });
+  return draw(drawing, contents, placement);
 }
 
 SpriteMultipliers multipliers_at(const Layer& layer, double time_s) {

@@ -7,6 +7,7 @@
 #include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/effects.h"
+#include "layers/moving_picture.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/blended_sprites.h"
 #include "sequences/pipeline/cross_fading.h"
@@ -107,9 +108,24 @@ int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
   return run.instant;
 }
 
+/// Frames of moving pictures that a sprite shows and the texture memory does not hold yet: each moving picture has
+/// room for one.
+void upload_pictures(const Pipeline& pipeline, PipelineState& state, const LayerState& drawn,
+                     FrameReport& report) {
+  for (const layers::ShownPicture& shown : drawn.pictures) {
+    if (state.uploaded[shown.picture] == shown.frame) continue;
+    state.uploaded[shown.picture] = shown.frame;
+    *report.upload_bytes += layers::bytes_of(pipeline.scene, shown);
+  }
+}
+
 /// Notes every layer that is to be rendered: its state and its placement, drawn or not.
 void remember_renders(const Pipeline& pipeline, PipelineState& state, const ShadowMapsNow& maps,
                       FrameReport& report) {
+  if (layers::is_built(layers::Effect::MovingPicture) && !pipeline.scene.moving_pictures.empty()) {
+    state.uploaded.resize(pipeline.scene.moving_pictures.size(), -1);
+    report.upload_bytes = 0;
+  }
   for (regulator::LayerDecision& decision : report.plan.decisions) {
     if (decision.action == Action::Drop) continue;
     LayerMemory& memory = state.memory[decision.layer];
@@ -121,6 +137,7 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
       // The placement first: it depends on how long the old sprite lasted.
       memory.placement = captured_placement(pipeline, state, decision.layer, instant);
       memory.then = captured_states(pipeline, state, instant)[decision.layer];
+      if (report.upload_bytes) upload_pictures(pipeline, state, *memory.then, report);
       memory.frame_rendered = report.frame;
       memory.depicts_frame = instant;
       memory.drawn = false;

@@ -40,7 +40,7 @@ class Threads {
 Call::Call(const std::string& sequence, const std::vector<std::string>& words, bool plan_only) {
   refuse_others_words(words, plan_only);
   const CommandLine line = command_line_from(sequence, words, plan_only);
-  sequence_ = load_sequence(line.sequence, content_options(line.content));
+  sequence_ = load_sequence(line.sequence, content_options(line));
   const ResolvedRun resolved = resolve(line, sequence_, plan_only);
   warnings_ = sequence_.warnings;
   require_none(warnings_, line.content.strict, sequence_.file);

@@ -198,6 +198,21 @@ FrameColumns light_layers() {
       [](auto& l) -> auto& { return *l.light_beside_px; })};
 }
 
+FrameColumns moving_pictures() {
+  return {stored<FrameLine>(
+      "upload_bytes", "moving_pictures/upload_bytes", "bytes",
+      "of frames of image sequences and videos that are drawn for the first time since another one was",
+      [](auto& l) -> auto& { return *l.upload_bytes; })};
+}
+
+FrameColumns seams() {
+  return {stored<FrameLine>(
+      "open_seam_px", "seams/open_px", "pixels",
+      "at the edges that layers share, where what is behind them shows: alpha more than 8/255 below "
+      "`direct`'s",
+      [](auto& l) -> auto& { return *l.open_seam_px; })};
+}
+
 /// One comparison of pictures. `Which` returns a Quality by reference.
 template <typename Which>
 FrameColumns quality(const std::string& which, const std::string& what, Which) {
@@ -238,6 +253,12 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
       {"light_layers", "where layers hold the light of single lights", false,
        [](const FrameLine& l) { return l.light_beside_px.has_value(); },
        [](FrameLine& l) { l.light_beside_px = 0; }},
+      {"seams", "with --quality, where layers share edges", false,
+       [](const FrameLine& l) { return l.open_seam_px.has_value(); },
+       [](FrameLine& l) { l.open_seam_px = 0; }},
+      {"moving_pictures", "where the scene has image sequences or videos", false,
+       [](const FrameLine& l) { return l.upload_bytes.has_value(); },
+       [](FrameLine& l) { l.upload_bytes = 0; }},
       {"budget_gap", "with --budget-gap", false, [](const FrameLine& l) { return l.budget_gap.has_value(); },
        [](FrameLine& l) { l.budget_gap.emplace(); }},
       {"quality", "with --quality", false, [](const FrameLine& l) { return l.quality.has_value(); },
@@ -252,7 +273,7 @@ const ColumnTable<FrameLine>& frame_table() {
     for (const FrameColumns& part :
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
-          light_layers(), frame_expressions(), frame_budget_gap(),
+          light_layers(), moving_pictures(), seams(), frame_expressions(), frame_budget_gap(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

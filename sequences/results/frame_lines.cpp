@@ -32,7 +32,7 @@ void add_drawing(FrameLine& line, const FrameReport& report) {
   line.times.composite_ms = report.times.composite_ms;
   line.modelled_ms =
       regulator::modelled_time(regulator::talisman_1996(), line.polygons.rendered, line.pixels.filled,
-                               line.pixels.composited + line.pixels.registers)
+                               line.pixels.composited + line.pixels.registers, line.upload_bytes.value_or(0))
           .frame_ms;
 }
 
@@ -83,6 +83,7 @@ FrameLine line_of(const FrameReport& report) {
     if (shown.beside_base_px)
       line.light_beside_px = std::max(line.light_beside_px.value_or(0), *shown.beside_base_px);
   line.budget_gap = report.budget_gap;
+  line.upload_bytes = report.upload_bytes;
   if (!report.picture.pixels.empty()) add_drawing(line, report);
   return line;
 }

@@ -81,11 +81,13 @@ struct FrameLine {
   double modelled_ms = 0;         ///< by the profile talisman-1996
   double modelled_drawing_ms =
       0;  ///< the part of rendering, as planned: texels filled depth_complexity times
-  std::optional<double> light_beside_px;  ///< the largest of all Light layers; empty: there is none
-  double depth_complexity = 1;            ///< by which a budget of ms was divided
+  std::optional<double> light_beside_px;     ///< the largest of all Light layers; empty: there is none
+  std::optional<std::int64_t> upload_bytes;  ///< of frames of moving pictures; empty: the scene has none
+  double depth_complexity = 1;               ///< by which a budget of ms was divided
   std::optional<CompressionReport> compression;
   std::optional<VisibilityLine> visibility;  ///< empty: the groups alone gave the order
   std::optional<FrameQuality> quality;
+  std::optional<std::int64_t> open_seam_px;        ///< with quality, where layers share edges
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   FrameTimes times;                                ///< not in frames.jsonl
 

@@ -15,6 +15,7 @@
 #include "sequences/pictures/overlay.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/make_pipeline.h"
+#include "sequences/pipeline/open_seams.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/pipeline/stopwatch.h"
 #include "sequences/results/audit.h"
@@ -150,14 +151,20 @@ class Runner {
   /// The frame is finished by the writer while the next ones are drawn and encoded. Jobs are copied, pictures are not.
   void hand_over(FrameReport report) {
     std::optional<FrameQuality> quality;
-    if (prepared_ && options_.quality) quality = judge(pipeline_, report, *prepared_);
+    std::optional<std::int64_t> open_seam_px;
+    if (prepared_ && options_.quality) {
+      quality = judge(pipeline_, report, *prepared_);
+      if (!seams_) seams_.emplace(pipeline_);
+      open_seam_px = seams_->open_in(state_, report, *prepared_);
+    }
     if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
     if (prepared_ && auditor_) auditor_->look(pipeline_, state_, report, *prepared_);
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     if (!prepared_) return writer_.submit([this, shared] { finish_frame(line_of(*shared)); });
-    writer_.submit_prepared([this, shared, quality]() -> FrameWriter::Job {
+    writer_.submit_prepared([this, shared, quality, open_seam_px]() -> FrameWriter::Job {
       FrameLine line = line_of(*shared);
       line.quality = quality;
+      line.open_seam_px = open_seam_px;
       const auto picture = std::make_shared<const FramePicture>(encoded_picture(*shared, options_));
       return [this, line, picture] { finish_frame(line, *picture); };
     });
@@ -181,6 +188,7 @@ class Runner {
   FolderLock lock_;
   Pipeline pipeline_;
   PipelineState state_;
+  std::optional<SeamCounter> seams_;
   std::map<int, FrameLine> kept_;
   std::unique_ptr<LineFile> decisions_, frames_, timing_;
   std::unique_ptr<chunker::PreparedScene> prepared_;

@@ -88,6 +88,7 @@ Json asked_of_content(const ContentOptions& options) {
   if (options.exposure_lx) asked["exposure"] = *options.exposure_lx;
   if (options.turntable_s) asked["turntable"] = *options.turntable_s;
   if (!options.stage) asked["stage"] = false;
+  if (options.seam) asked["seam"] = *options.seam == Seam::Auto ? "auto" : "none";
   return asked;
 }
 

@@ -61,6 +61,38 @@ std::string quality_rows(const RunRow& run) {
   return text;
 }
 
+/// Empty where no layers share edges.
+std::string seam_row(const Summary& s) {
+  std::int64_t open = 0, most = 0;
+  int worst = -1;
+  bool counted = false;
+  for (const FrameLine& line : s.frames) {
+    if (!line.open_seam_px) continue;
+    counted = true;
+    open += *line.open_seam_px;
+    if (*line.open_seam_px > most) most = *line.open_seam_px, worst = line.frame;
+  }
+  if (!counted) return {};
+  const std::string all =
+      formatted("  %-30s %lld pixels", "open at shared edges", static_cast<long long>(open));
+  return worst < 0
+             ? all + "\n"
+             : all + formatted(", at most %lld in one frame, %d\n", static_cast<long long>(most), worst);
+}
+
+/// Empty where nothing moves in pictures.
+std::string upload_row(const Summary& s) {
+  std::int64_t bytes = 0;
+  bool counted = false;
+  for (const FrameLine& line : s.frames) {
+    counted = counted || line.upload_bytes.has_value();
+    bytes += line.upload_bytes.value_or(0);
+  }
+  return counted ? formatted("  %-17s %s bytes of new frames of pictures\n", "uploaded",
+                             magnitude(static_cast<double>(bytes)).c_str())
+                 : "";
+}
+
 std::string share_row(const char* label, std::int64_t part, std::int64_t whole, const char* of) {
   const double a = static_cast<double>(part), b = static_cast<double>(whole);
   return formatted("  %-17s %s of %s%s (%s %% of reference)\n", label, magnitude(a).c_str(),
@@ -154,11 +186,11 @@ std::string table_of(const Summary& s) {
   std::string text = formatted("%s: %zu %s of %dx%d px, policy %s, warp %s\n\n", s.sequence.c_str(),
                                s.frames.size(), s.frames.size() == 1 ? "frame" : "frames", s.display_px.x,
                                s.display_px.y, s.policy.c_str(), s.warp.c_str());
-  text += layer_rows(s) + "\n" + work_rows(s) + special_rows(run);
+  text += layer_rows(s) + "\n" + work_rows(s) + special_rows(run) + upload_row(s);
   text += formatted("  planning          %.2f us per layer and frame\n", s.planning_us_per_layer_and_frame());
   if (run.compression) text += compression_row(run);
   text += time_row(s);
-  if (run.quality) text += "\n" + quality_rows(run);
+  if (run.quality) text += "\n" + quality_rows(run) + seam_row(s);
   if (!s.audit.empty()) text += "\n" + table_of(s.audit);
   return text;
 }

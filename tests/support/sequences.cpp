@@ -39,7 +39,7 @@ void add_pane(Scene& scene) {
 }
 
 /// The lamp sways, the eye goes by, the pane (the last node) crosses quickly enough to be blurred.
-/// A rippled square that glows and, in 2 s, bends its upper half upwards.
+/// A rippled square that glows, shows stripes that change places and, in 2 s, bends its upper half upwards.
 void add_sail(Scene& scene) {
   Node stand;
   stand.name = "sail";
@@ -60,6 +60,11 @@ void add_sail(Scene& scene) {
   scene.materials.back().normal_texture = static_cast<int>(scene.textures.size());
   scene.textures.push_back({"ripples", 2, 1, {218, 128, 218, 255, 37, 128, 218, 255}});
   layers::derive_tangents(mesh);
+  const int first = static_cast<int>(scene.textures.size());
+  scene.materials.back().texture = first;
+  scene.textures.push_back({"stripes 0", 2, 1, {230, 60, 60, 255, 60, 230, 60, 255}});
+  scene.textures.push_back({"stripes 1", 2, 1, {60, 230, 60, 255, 230, 60, 60, 255}});
+  scene.moving_pictures.push_back({"stripes", first, 12, 0, 2, true, {}, 0, {0, 1}, {first, first + 1}});
   layers::MorphTrack grow;
   grow.weights = {{{0, 2}, {0, 1}, layers::Interpolation::Linear}};
   scene.tracks.push_back({node, grow});

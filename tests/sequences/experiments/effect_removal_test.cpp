@@ -69,7 +69,9 @@ TEST_P(WithoutEffect, IsNotCalledForAnyMore) {
 TEST_P(WithoutEffect, NothingElseGoesThanTheHeaderSays) {
   // What the four shade layers and the surfaces under them cannot do without one another.
   const std::map<Effect, std::set<Effect>> also = {
-      {Effect::Texture, {Effect::MipFilter, Effect::TextureLayers, Effect::EmissiveMap, Effect::NormalMap}},
+      {Effect::Texture,
+       {Effect::MipFilter, Effect::TextureLayers, Effect::EmissiveMap, Effect::NormalMap,
+        Effect::MovingPicture}},
       {Effect::Lighting,
        {Effect::SpecularHighlight, Effect::ColorWarp, Effect::ShadowMap, Effect::ShadowLayer,
         Effect::SpecularLayer, Effect::EmissiveMap, Effect::LightFalloff, Effect::NormalMap,

@@ -62,10 +62,12 @@ class EffectTable : public ::testing::Test {
 };
 
 /// What only models of other programs bring.
-const std::vector<Row> kOfModels = {{"emissive_map", kNot, "no lit material has an emissive texture"},
-                                    {"morphing", kNot, "no part has morph targets"},
-                                    {"light_falloff", kNot, "no light fades with distance"},
-                                    {"normal_map", kNot, "no lit part has a normal texture and tangents"}};
+const std::vector<Row> kOfModels = {
+    {"emissive_map", kNot, "no lit material has an emissive texture"},
+    {"morphing", kNot, "no part has morph targets"},
+    {"light_falloff", kNot, "no light fades with distance"},
+    {"normal_map", kNot, "no lit part has a normal texture and tangents"},
+    {"moving_picture", kNot, "no material shows an image sequence or a video"}};
 
 /// The stage, factored or not: it differs in the resolution of its layers and from the shadow layers on.
 std::vector<Row> stage_table(const Row& resolution, const std::vector<Row>& shade_layers) {
@@ -139,7 +141,8 @@ std::vector<Row> plain_rows(const Row& texture, const Row& lighting, const Row& 
           kOfModels[0],
           kOfModels[1],
           kOfModels[2],
-          kOfModels[3]};
+          kOfModels[3],
+          kOfModels[4]};
 }
 
 TEST_F(EffectTable, OfTheCarouselCallsForOrderAndLight) {

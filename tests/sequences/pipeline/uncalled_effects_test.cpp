@@ -178,6 +178,13 @@ Numbers of_specular_layers(const WholeRun& run) {
   return n;
 }
 
+Numbers of_moving_pictures(const WholeRun& run) {
+  std::int64_t bytes = 0;
+  for (const FrameLine& line : run.summary.frames) bytes += line.upload_bytes.value_or(0);
+  return {{"frames captured", sum_over_states(run, [](auto& s) { return s.pictures.size(); })},
+          {"bytes uploaded", double(bytes)}};
+}
+
 /// Every number of a run that belongs to one effect, besides its passes.
 Numbers numbers_of(const WholeRun& run, Effect effect) {
   switch (effect) {
@@ -211,14 +218,9 @@ Numbers numbers_of(const WholeRun& run, Effect effect) {
       return of_shade_layers(run, LayerKind::Reflection);
     case Effect::TextureLayers:
       return of_shade_layers(run, LayerKind::Texture);
-    case Effect::EmissiveMap:
-    case Effect::Morphing:
-    case Effect::LightFalloff:
-    case Effect::NormalMap:
-    case Effect::SpecularHighlight:
-    case Effect::Translucency:
-    case Effect::LayerResolution:
-    case Effect::MotionBlur:
+    case Effect::MovingPicture:
+      return of_moving_pictures(run);
+    default:
       break;  // leave nothing behind but their passes and the picture
   }
   return {};
