@@ -48,8 +48,8 @@ std::vector<Paper> made_up_papers() {
   pictures.pictures = true;
   item.claims.push_back(pictures);
   item.draw = [](PaperBench&) {
-    Plot plot{"bars", {"sprite", "", false}, {"rate", "%", false, true}, {}};
-    plot.series.push_back({"rate", {{1, 20}, {2, 50}}, SeriesStyle::Bars, {"sky", "land"}});
+    Plot plot{"bars", {"sprite", "", false, false, {"sky", "land"}}, {"rate", "%", false, true}, {}};
+    plot.series.push_back({"rate", {{1, 20}, {2, 50}}, SeriesStyle::Bars});
     return std::vector<PaperFigure>{{"X99-7", "Fig. 7", plot}};
   };
   return {{"X99", "Nobody, Nothing, 1999", {item, {"8", "Table 8", {claim_of("yes", true)}, nullptr}}}};
