@@ -108,7 +108,26 @@ bool FrameBeat::drew(const LayerAssessment& layer) const {
   return layer.has_sprite && layer.frames_since_render == std::abs(frame - last_beat);
 }
 
-bool keeps_beat(Policy policy) { return policy == Policy::Hold || policy == Policy::Interpolate; }
+bool keeps_beat(const RegulatorOptions& options) {
+  return options.policy == Policy::Hold || (options.policy == Policy::Interpolate && !options.stagger);
+}
+
+bool blends(const RegulatorOptions& options) {
+  if (options.blend_frames < 1) return false;
+  switch (options.policy) {
+    case Policy::Interpolate:
+    case Policy::Threshold:
+    case Policy::Lookahead:
+    case Policy::Oracle:
+      return true;
+    case Policy::Direct:
+    case Policy::Reference:
+    case Policy::Hold:    // nothing is carried: the old sprite would stand beside the fresh one
+    case Policy::Budget:  // which would have to be spent on fades, too
+      return false;
+  }
+  return false;
+}
 
 FrameBeat regular_beat(int frame, const RegulatorOptions& options) {
   return {frame, frame - frame % options.hold_frames};
@@ -180,6 +199,7 @@ std::string first_defect(const BudgetOptions& b) {
 
 std::string first_defect(const RegulatorOptions& options) {
   if (options.hold_frames < 1) return broken("hold_frames", options.hold_frames, "at least 1");
+  if (options.blend_frames < 0) return broken("blend_frames", options.blend_frames, "at least 0 (0: off)");
   if (options.settle_frames < 0)
     return broken("settle_frames", options.settle_frames, "0 (off) or at least 1");
   if (std::string defect = first_defect(options.thresholds); !defect.empty()) return defect;

@@ -143,7 +143,14 @@ struct BudgetOptions {
 /// Options of all policies.
 struct RegulatorOptions {
   Policy policy = Policy::Threshold;
-  int hold_frames = 3;     ///< Hold, Interpolate: N ≥ 1; 1 is every frame
+  int hold_frames = 3;  ///< Hold, Interpolate: N ≥ 1; 1 is every frame
+  bool stagger =
+      false;  ///< Interpolate: each layer has a beat of its own, so that not all step at once and each
+              ///< frame draws about as much as the next
+  int blend_frames =
+      0;  ///< K ≥ 0; policies that carry sprites by warps and have no budget: a fresh sprite fades in
+          ///< over K frames (sequences/pipeline/cross_fading.h); more steps less, fills more texels
+          ///< and shows the old error longer; 0: off
   bool color_warp = true;  ///< reused sprites are multiplied with the colour that fits their shading best;
                            ///< false: hardware without it, the photometric error is that of 1
   int settle_frames =
@@ -196,8 +203,11 @@ struct FrameBeat {
   bool drew(const LayerAssessment& layer) const;
 };
 
-/// Do pictures stand from one beat to the next under this policy?
-bool keeps_beat(Policy policy);
+/// Do pictures stand from one beat to the next?
+bool keeps_beat(const RegulatorOptions& options);
+
+/// Do fresh sprites fade in: is that asked for, and does the policy carry sprites by warps, without a budget?
+bool blends(const RegulatorOptions& options);
 
 /// As if the run had begun at frame 0: a beat is every frame that hold_frames divides.
 FrameBeat regular_beat(int frame, const RegulatorOptions& options);

@@ -86,6 +86,15 @@ bool has_sound_fit(const LayerAssessment& layer) {
   return layer.fitted.usable() && layer.matched_points >= kFewestMatchedPoints;
 }
 
+bool may_fade_out(const LayerAssessment& old, const RegulatorOptions& options) {
+  if (old.identical) return true;
+  const Thresholds& limits = options.thresholds;
+  const fiducials::Visibility& visibility = old.fiducials.visibility;
+  return has_sound_fit(old) &&
+         old.fiducials.geometric.px <= kMostFadedError * geometric_limit_px(old, limits) &&
+         (limits.uncovered_px < 0 || !visibility.computed || visibility.uncovered_px <= limits.uncovered_px);
+}
+
 std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& options) {
   if (nothing_to_gain(layer)) return {};
   if (!(options.thresholds.geometric_px > 0)) return "changed, geometric threshold 0 px";

@@ -152,6 +152,11 @@ void CommandTree::add_inspect() {
       .option("--out", inspect_.out, "with --parts: the picture", "out/NAME-parts.png")
       .flag("--order", inspect_.order,
             "the visibility order over time, what was merged and why, and what the sort cost")
+      .flag("--factoring", inspect_.factoring,
+            "which layers would cost least: what each split or merge would save, beside one layer per node "
+            "and one "
+            "for all; the layers as YAML to paste")
+      .option("--max-layers", inspect_.max_layers, "with --factoring: propose no more than so many", "40")
       .option("--cycles", inspect_.cycles, "with --order: " + alternatives(kCyclesWords))
       .option("--compositor", inspect_.compositor, "with --order: " + alternatives(kCompositorWords));
   add_content_options(*command, inspect_.content);

@@ -21,6 +21,8 @@ using regulator::Policy;
 /// The options that decide, or say how what is decided is done: not where the results go.
 constexpr std::array kDecidingOptions = {"geometric-px",
                                          "hold",
+                                         "stagger",
+                                         "blend",
                                          "lookahead",
                                          "predict",
                                          "photometric",

@@ -40,7 +40,9 @@ std::vector<Group> groups_of(const CommandLine& line) {
                                {{Threshold, Lookahead, Oracle}, {}},
                                {{Threshold}, {}},
                                // Budget adds these to the benefit; interpolate follows the light by them.
-                               {{Interpolate, Threshold, Budget, Lookahead, Oracle}, {}}};
+                               {{Interpolate, Threshold, Budget, Lookahead, Oracle}, {}},
+                               {{Interpolate}, {}},
+                               {{Interpolate, Threshold, Lookahead, Oracle}, {}}};
   Given(groups[0].given)("--hold", line.hold);
   Given(groups[1].given)("--lookahead", line.lookahead)("--predict", line.predict);
   Given(groups[2].given)("--budget-polygons", line.budget_polygons)("--budget-pixels", line.budget_pixels)(
@@ -51,6 +53,8 @@ std::vector<Group> groups_of(const CommandLine& line) {
   Given(groups[4].given)("--shadow-map-px", line.shadow_map_px);
   Given(groups[5].given)("--photometric", line.photometric)("--light-angle-deg", line.light_angle_deg)(
       "--turned-px", line.turned_px)("--color-warp", line.color_warp);
+  Given(groups[6].given)("--stagger", line.stagger);
+  Given(groups[7].given)("--blend", line.blend);
   return groups;
 }
 

@@ -9,11 +9,13 @@
 
 #include "layers/effects.h"
 #include "regulator/profile.h"
-#include "sequences/commands/inspect_order.h"
-#include "sequences/commands/inspect_parts.h"
+#include "sequences/commands/inspect/inspect_factoring.h"
+#include "sequences/commands/inspect/inspect_order.h"
+#include "sequences/commands/inspect/inspect_parts.h"
 #include "sequences/commands/missing_effects.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/words.h"
+#include "sequences/content/factoring/factoring.h"
 #include "sequences/experiments/variant.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/number_text.h"
@@ -144,7 +146,12 @@ namespace {
 void require_one_question(const InspectOptions& options) {
   if (!options.out.empty() && !options.parts)
     throw InputError("--out is the picture of --parts, must come with it");
-  if (options.parts && options.order) throw InputError("--parts and --order are two questions, must be one");
+  if (options.parts + options.order + options.factoring > 1)
+    throw InputError("--parts, --order and --factoring are several questions, must be one");
+  if (options.max_layers && !options.factoring)
+    throw InputError("--max-layers limits what --factoring proposes, must come with it");
+  if (options.factoring && options.json)
+    throw InputError("--factoring prints text and YAML, must be given without --json");
   for (const auto& [name, value] :
        {std::pair{"--cycles", options.cycles}, {"--compositor", options.compositor}})
     if (!value.empty() && !options.order)
@@ -163,10 +170,11 @@ int run_inspect(const InspectOptions& options, std::ostream& out) {
   ContentWords content = options.content;
   content.no_stage |= options.parts;  // the ground that a bare model is given is not in its file
   const Sequence sequence = load_with_warnings(options.sequence, content);
-  out << (options.parts   ? inspect_parts(sequence, options.out, options.json)
-          : options.order ? order_of(sequence, options)
-          : options.json  ? inspection_json(sequence)
-                          : inspection_text(sequence));
+  out << (options.factoring ? inspect_factoring(sequence, options.max_layers.value_or(kMostLayersByDefault))
+          : options.parts   ? inspect_parts(sequence, options.out, options.json)
+          : options.order   ? order_of(sequence, options)
+          : options.json    ? inspection_json(sequence)
+                            : inspection_text(sequence));
   return kSuccess;
 }
 

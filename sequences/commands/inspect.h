@@ -5,6 +5,7 @@
 /// effects that it calls for, with reasons; or its visibility order over time (inspect_order.h).
 
 #include <iosfwd>
+#include <optional>
 #include <string>
 
 #include "sequences/commands/options.h"
@@ -16,7 +17,8 @@ struct InspectOptions {
   std::string sequence;            ///< name or path; may be empty where `profile` is asked for
   std::string cycles, compositor;  ///< of `order`; empty: the sequence's own
   std::string out;                 ///< picture of `parts`
-  bool json = false, profile = false, order = false, parts = false;
+  bool json = false, profile = false, order = false, parts = false, factoring = false;
+  std::optional<int> max_layers;  ///< of `factoring`
   ContentWords content;
 };
 

@@ -16,7 +16,7 @@
 #include "sequences/commands/command_tree.h"
 #include "sequences/commands/export_command.h"
 #include "sequences/commands/inspect.h"
-#include "sequences/commands/inspect_order.h"
+#include "sequences/commands/inspect/inspect_order.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/parse_error.h"
 #include "sequences/commands/run_words.h"

@@ -12,6 +12,7 @@
 #include "sequences/commands/ineffective.h"
 #include "sequences/commands/missing_effects.h"
 #include "sequences/commands/words.h"
+#include "sequences/content/own_settings.h"
 
 namespace talisman::sequences {
 
@@ -103,6 +104,8 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (!line.policy.empty()) options.policy = choice("--policy", line.policy, kPolicyWords);
   apply_thresholds(line, options);
   if (line.hold) options.hold_frames = *line.hold;
+  if (line.blend) options.blend_frames = *line.blend;
+  if (!line.stagger.empty()) options.stagger = choice("--stagger", line.stagger, kSwitchWords);
   if (line.lookahead) options.lookahead.frames = *line.lookahead;
   apply_limits(line, options);
   apply_prediction(line, options);
@@ -143,7 +146,6 @@ void apply_order(const CommandLine& line, const Sequence& sequence, Settings& se
   if (settings.material_points < 0 || settings.material_points > layers::kMostMaterialPoints)
     throw InputError("--material-points is " + std::to_string(settings.material_points) +
                      ", must be from 0 to " + std::to_string(layers::kMostMaterialPoints));
-  settings.explicit_order = sequence.explicit_order;
   settings.cycles = chosen("--cycles", line.cycles, kCyclesWords, sequence.cycles);
   settings.compositor = chosen("--compositor", line.compositor, kCompositorWords, sequence.compositor);
   if (settings.compositor == Compositor::Extended) return;
@@ -156,27 +158,24 @@ void apply_order(const CommandLine& line, const Sequence& sequence, Settings& se
 
 /// How large, how dense and how shaded sprites are.
 void apply_sprites(const CommandLine& line, const Sequence& sequence, Settings& settings) {
-  settings.extents = sequence.extents;
   if (line.expected_reuse)
     settings.extents.expected_reuse_frames = positive("--expected-reuse", *line.expected_reuse, 1e4);
-  settings.placement = sequence.placement;
   if (line.resolution) settings.placement.resolution_scale = positive("--resolution", *line.resolution, 4);
   settings.render.shading = chosen("--shading", line.shading, kShadingWords, settings.render.shading);
   settings.compression = compression_from(line, sequence, settings.regulator.policy);
+  if (settings.compression && regulator::blends(settings.regulator))
+    throw InputError("blend_frames is " + std::to_string(settings.regulator.blend_frames) +
+                     ", but sprites are compressed, must be 0: what is mixed cannot be kept compressed");
 }
 
 Settings settings_of(const CommandLine& line, const Sequence& sequence) {
-  Settings settings;
-  settings.regulator = sequence.regulator;
+  Settings settings = own_settings(sequence);
   apply_regulator(line, settings.regulator);
   settings.layers_own_warps = line.warp.empty();
   settings.curve = choice("--warp", line.warp.empty() ? sequence.warp : line.warp, kCurveWords);
-  settings.view.display_px = line.size.empty() ? sequence.display_px : display_from(line.size);
-  if (sequence.clip_margin) settings.view.clip_margin = *sequence.clip_margin;
+  if (!line.size.empty()) settings.view.display_px = display_from(line.size);
   apply_order(line, sequence, settings);
   apply_sprites(line, sequence, settings);
-  settings.fps = sequence.fps;
-  settings.frames = sequence.frames;
   settings.budget_gap = line.budget_gap;
   return settings;
 }

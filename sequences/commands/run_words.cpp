@@ -36,6 +36,11 @@ void add_policy(CLI::App& command, CommandLine& line) {
               std::string(word_of(kUsual.policy, kPolicyWords)))
       .option("--hold", line.hold, "policies hold and interpolate: drawn every N frames",
               std::to_string(kUsual.hold_frames))
+      .option("--stagger", line.stagger, "policy interpolate: on: each layer has a beat of its own", "off")
+      .option("--blend", line.blend,
+              "a sprite that is drawn again fades in over K frames; the old one may be off by twice the "
+              "threshold; 0: at once",
+              std::to_string(kUsual.blend_frames))
       .option("--lookahead", line.lookahead,
               "policy lookahead: frames ahead as of which a sprite may be drawn",
               std::to_string(kUsual.lookahead.frames))

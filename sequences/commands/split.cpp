@@ -4,7 +4,7 @@
 #include <ostream>
 
 #include "sequences/files/errors.h"
-#include "sequences/results/split_layer.h"
+#include "sequences/results/factoring/split_layer.h"
 
 namespace talisman::sequences {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 /// `talisman plan SEQUENCE --split LAYER`: what if this layer were split? The sequence as it is, and with each part of
-/// the layer as a layer of its own, both planned (results/split_layer.h). Nothing is written.
+/// the layer as a layer of its own, both planned (results/factoring/split_layer.h). Nothing is written.
 
 #include <iosfwd>
 #include <string>

@@ -4,7 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <set>
+#include <utility>
 
+#include "layers/animation.h"
+#include "sequences/content/factoring/factoring.h"
+#include "sequences/content/own_settings.h"
 #include "sequences/content/value_type.h"
 
 namespace talisman::sequences {
@@ -41,11 +46,10 @@ int frames_of_model(const layers::Scene& scene, double turntable_s, double fps) 
 
 }  // namespace
 
-std::vector<layers::LayerSpec> specs_of_model(const layers::Scene& scene, const std::vector<LayerTag>& tags) {
+std::vector<layers::LayerSpec> tagged_specs(const layers::Scene& scene, const std::vector<LayerTag>& tags) {
   const std::vector<std::string> tag_of = tags_of_nodes(scene, tags);
   std::vector<layers::LayerSpec> specs;
   std::map<std::string, std::size_t> spec_of;
-  std::vector<std::string> tagged_parts;
   for (const layers::Part& part : scene.parts) {
     const std::string& layer = tag_of[part.node];
     if (layer.empty()) continue;
@@ -54,17 +58,71 @@ std::vector<layers::LayerSpec> specs_of_model(const layers::Scene& scene, const 
     std::string glob = part.name;
     std::replace(glob.begin(), glob.end(), '*', '?');
     specs[entry->second].part_globs.push_back(glob);
-    tagged_parts.push_back(glob);
+  }
+  return specs;
+}
+
+std::vector<layers::LayerSpec> specs_of_model(const layers::Scene& scene, const std::vector<LayerTag>& tags) {
+  std::vector<layers::LayerSpec> specs = tagged_specs(scene, tags);
+  std::set<std::string> used, tagged_parts;
+  for (const layers::LayerSpec& spec : specs) {
+    used.insert(spec.name);
+    tagged_parts.insert(spec.part_globs.begin(), spec.part_globs.end());
   }
   for (layers::LayerSpec& spec : layers::default_layer_specs(scene)) {
-    std::erase_if(spec.part_globs, [&](const std::string& glob) {
-      return std::find(tagged_parts.begin(), tagged_parts.end(), glob) != tagged_parts.end();
-    });
-    while (spec_of.count(spec.name)) spec.name += "'";
+    std::erase_if(spec.part_globs, [&](const std::string& glob) { return tagged_parts.contains(glob); });
+    spec.name = unused_name(used, spec.name);
     if (!spec.part_globs.empty()) specs.push_back(std::move(spec));
   }
   return specs;
 }
+
+namespace {
+
+/// Nodes that move parts by themselves, and parts that deform.
+std::size_t moving_bodies(const layers::Scene& scene) {
+  const std::vector<int> carriers = layers::moving_carriers(scene);
+  std::set<int> rigid;
+  std::size_t deforming = 0;
+  for (const layers::Part& part : scene.parts) {
+    if (layers::deforms(scene, part))
+      ++deforming;
+    else if (carriers[part.node] >= 0)
+      rigid.insert(carriers[part.node]);
+  }
+  return rigid.size() + deforming;
+}
+
+/// The scene without what its textures show, of which a plan asks nothing.
+layers::Scene without_texels(layers::Scene& scene) {
+  std::vector<std::vector<std::uint8_t>> texels;
+  for (layers::Texture& texture : scene.textures) texels.push_back(std::exchange(texture.rgba, {}));
+  layers::Scene copy = scene;
+  for (std::size_t i = 0; i < texels.size(); ++i) scene.textures[i].rgba = std::move(texels[i]);
+  return copy;
+}
+
+void factor_by_motion(BareModel& bare) {
+  layers::Scene shown = without_texels(bare.model.scene);
+  std::vector<layers::LayerSpec> kept = tagged_specs(shown, bare.model.layer_tags);
+  const std::size_t tagged = kept.size();
+  add_model_view(shown, kept, bare.view);
+  const std::size_t all_kept = kept.size();
+  Sequence as_shown;
+  as_shown.fps = bare.fps;
+  as_shown.frames = bare.frames;
+  Factoring found = study({shown, std::move(kept), own_settings(as_shown)}, AutoLayers{}).chosen;
+  bare.specs.assign(found.specs.begin(), found.specs.begin() + static_cast<std::ptrdiff_t>(tagged));
+  bare.specs.insert(bare.specs.end(), found.specs.begin() + static_cast<std::ptrdiff_t>(all_kept),
+                    found.specs.end());
+  const auto place_now = [&](std::size_t spec) {
+    return spec < tagged ? spec : spec < all_kept ? bare.specs.size() : spec - (all_kept - tagged);
+  };
+  for (const auto& [behind, front] : found.pairs())
+    bare.order.emplace_back(place_now(behind), place_now(front));
+}
+
+}  // namespace
 
 BareModel read_bare_model(const std::string& path, const ContentOptions& options) {
   BareModel bare;
@@ -72,7 +130,10 @@ BareModel read_bare_model(const std::string& path, const ContentOptions& options
   bare.view = {options.turntable_s.value_or(kTurntable_s), options.stage, options.exposure_lx.value_or(1)};
   bare.frames = frames_of_model(bare.model.scene, bare.view.turn_s, bare.fps);
   if (options.exposure_lx) expose(bare.model, *options.exposure_lx);
-  bare.specs = specs_of_model(bare.model.scene, bare.model.layer_tags);
+  if (moving_bodies(bare.model.scene) > 1)
+    factor_by_motion(bare);
+  else
+    bare.specs = specs_of_model(bare.model.scene, bare.model.layer_tags);
   return bare;
 }
 

@@ -94,4 +94,16 @@ std::vector<ExplicitPair> resolve_layer_pairs(std::span<const LayerPairEntry> en
   return pairs;
 }
 
+void add_free_pairs(std::span<const ExplicitPair> more, std::span<const Layer> layers,
+                    std::vector<ExplicitPair>& pairs) {
+  Reach reach(layers.size());
+  for (const ExplicitPair& pair : pairs) reach.add(pair);
+  for (const ExplicitPair& pair : more) {
+    if (layers[pair.behind].group > layers[pair.front].group || reach.is_in_front(pair.behind, pair.front))
+      continue;
+    reach.add(pair);
+    pairs.push_back(pair);
+  }
+}
+
 }  // namespace talisman::sequences

@@ -28,4 +28,8 @@ const Table<LayerPairEntry>& layer_pair_keys();
 std::vector<layers::ExplicitPair> resolve_layer_pairs(std::span<const LayerPairEntry> entries,
                                                       std::span<const layers::Layer> layers);
 
+/// Adds those of `more` that contradict neither the groups nor a pair that is there; the others are left out.
+void add_free_pairs(std::span<const layers::ExplicitPair> more, std::span<const layers::Layer> layers,
+                    std::vector<layers::ExplicitPair>& pairs);
+
 }  // namespace talisman::sequences

@@ -109,6 +109,14 @@ const Table<RegulatorOptions>& regulator_keys() {
           .key("policy", &R::policy, policy(), "", "what decides")
           .key("hold_frames", &R::hold_frames, whole(1, kLongestRun_frames), "frames",
                "policies hold and interpolate: drawn every so many")
+          .key("stagger", &R::stagger, truth(), "",
+               "policy interpolate: each layer has a beat of its own, so that not all are drawn in the same "
+               "frame")
+          .key("blend_frames", &R::blend_frames, whole(0, kLongestRun_frames), "frames",
+               "policies interpolate, threshold, lookahead and oracle: a sprite that is drawn again fades in "
+               "over "
+               "so many, as long as the old one is off by no more than twice geometric_px; 0: it is shown at "
+               "once")
           .key("settle_frames", &R::settle_frames, whole(0, kLongestRun_frames), "frames",
                "a layer that is shown enlarged is drawn again when it has been at rest for so many; 0: never")
           .include(&R::thresholds, threshold_keys())

@@ -6,7 +6,9 @@
 
 #include "sequences/content/asset_paths.h"
 #include "sequences/content/bare_model.h"
+#include "sequences/content/factoring/factoring.h"
 #include "sequences/content/nearest_word.h"
+#include "sequences/content/own_settings.h"
 #include "sequences/content/scene_builder.h"
 #include "sequences/content/sequence_file.h"
 #include "sequences/files/quoted.h"
@@ -90,6 +92,16 @@ void apply(const ContentOptions& options, const std::string& path, SceneRecipe& 
   if (options.turntable_s) recipe.turntable_s = *options.turntable_s;
 }
 
+/// The layers of a file that leaves them to us. What of the order was not always seen so is a warning.
+Factoring found_layers(Sequence& sequence, const BuiltScene& built, const AutoLayers& options) {
+  Factoring found =
+      study({built.scene, tagged_specs(built.scene, built.layer_tags), own_settings(sequence)}, options)
+          .chosen;
+  for (const SeenPair& seen : found.order)
+    if (seen.hidden > 0) sequence.warnings.push_back(sequence.file + ": " + hidden_in_words(found, seen));
+  return found;
+}
+
 Sequence load_yaml(const std::string& path, const ContentOptions& options) {
   SequenceFile file = read_sequence_file(path);
   apply(options, path, file.recipe);
@@ -100,15 +112,23 @@ Sequence load_yaml(const std::string& path, const ContentOptions& options) {
     throw InputError("shows nothing, rule: at least one of shapes, models, terrain and sky", path);
   std::vector<layers::LayerSpec> specs;
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
-  if (specs.empty()) specs = specs_of_model(built.scene, built.layer_tags);
   Sequence sequence = std::move(file.settings);
   sequence.content = options;
+  std::vector<SpecPair> found_order;
+  if (file.auto_layers) {
+    Factoring found = found_layers(sequence, built, *file.auto_layers);
+    specs = std::move(found.specs);
+    found_order = found.pairs();
+  } else if (specs.empty()) {
+    specs = specs_of_model(built.scene, built.layer_tags);
+  }
   finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) {
     file.settings.file = path;
     fail_at_layer(file, *sequence.scene, sequence.layers.defect);
   }
   sequence.explicit_order = resolve_layer_pairs(file.order, sequence.layers.layers);
+  add_free_pairs(ids_of(found_order, sequence.layers), sequence.layers.layers, sequence.explicit_order);
   return sequence;
 }
 
@@ -121,6 +141,7 @@ Sequence load_model(const std::string& path, const ContentOptions& options) {
   sequence.fps = bare.fps;
   sequence.frames = bare.frames;
   std::vector<layers::LayerSpec> specs = std::move(bare.specs);
+  const std::vector<SpecPair> found_order = std::move(bare.order);
   add_model_view(bare.model.scene, specs, bare.view);
   for (const std::string& note : bare.model.notes) sequence.notes.push_back(path + ": " + note);
   BuiltScene built;
@@ -129,6 +150,7 @@ Sequence load_model(const std::string& path, const ContentOptions& options) {
   built.files = files_read(bare.model);
   finish(sequence, std::move(built), std::move(specs));
   if (!sequence.layers.defect.empty()) throw InputError(sequence.layers.defect, path);
+  add_free_pairs(ids_of(found_order, sequence.layers), sequence.layers.layers, sequence.explicit_order);
   return sequence;
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "sequences/content/asset_paths.h"
+#include "sequences/content/factoring/factoring_keys.h"
 #include "sequences/content/regulator_keys.h"
 #include "warp/warp.h"
 
@@ -123,6 +124,14 @@ Table<SequenceFile> pipeline_keys() {
       .otherwise(shown(layers::View{}.clip_margin));
 }
 
+/// A list of layers, or a map that says how they are found.
+void read_layers(const YamlValue& value, SequenceFile& file) {
+  if (value.is_map())
+    file.auto_layers = auto_layers_keys().read(value);
+  else
+    file.layers = list_of(layer_keys()).read(value);
+}
+
 /// A variant says `extends: FILE` and then only what is different at the top level.
 YamlMap read_with_base(const std::string& file, int depth, std::vector<std::string>& files) {
   YamlMap own = read_yaml_file(file);
@@ -143,7 +152,10 @@ const Table<SequenceFile>& sequence_keys() {
           .extends_by("extends")
           .include(film_keys())
           .include(&SequenceFile::recipe, scene_keys())
-          .key("layers", &SequenceFile::layers, list_of(layer_keys()), "", "which parts make up which sprite")
+          .custom(
+              "layers",
+              either_type({list_type(map_type(layer_keys().keys()), 1), map_type(auto_layers_keys().keys())}),
+              read_layers, "", "which parts make up which sprite, or how that is found")
           .otherwise("one per moving node, or per top-level node where nothing moves")
           .include(pipeline_keys());
   return table;

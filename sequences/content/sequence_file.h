@@ -3,9 +3,11 @@
 
 /// A sequence file as data. Its format is described in docs/sequence-format.md.
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sequences/content/factoring/factoring.h"
 #include "sequences/content/layer_keys.h"
 #include "sequences/content/layer_pairs.h"
 #include "sequences/content/scene_recipe.h"
@@ -16,7 +18,8 @@ namespace talisman::sequences {
 struct SequenceFile {
   Sequence settings;  ///< without scene and layers
   SceneRecipe recipe;
-  std::vector<LayerEntry> layers;  ///< empty: one per moving or top-level node
+  std::vector<LayerEntry> layers;         ///< empty: one per moving or top-level node, or as the next says
+  std::optional<AutoLayers> auto_layers;  ///< how they are found, where none are written
   std::vector<LayerPairEntry> order;
 };
 

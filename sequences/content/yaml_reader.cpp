@@ -97,6 +97,7 @@ glm::vec3 YamlValue::color() const {
 }
 
 bool YamlValue::is_list() const { return node_->IsSequence(); }
+bool YamlValue::is_map() const { return node_->IsMap(); }
 
 std::vector<YamlValue> YamlValue::items(std::size_t at_least) const {
   if (!node_->IsSequence() || node_->size() < at_least)

@@ -42,6 +42,7 @@ class YamlValue {
   std::size_t choice(const std::vector<std::string>& words) const;
 
   bool is_list() const;
+  bool is_map() const;
   /// "what, the value, the rule" with file and line.
   [[noreturn]] void fail(const std::string& rule) const;
   /// The same where more is to be said of the value: "camera has near_m '5', …".

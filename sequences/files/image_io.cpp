@@ -5,6 +5,7 @@
 
 #include "layers/check.h"
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/png_encoding.h"
 
 namespace talisman::sequences {
 namespace {
@@ -63,7 +64,7 @@ void write_exr(const std::string& path, const chunker::Frame& frame) {
 
 EncodedPicture encoded_png(const Image8& image) {
   TALISMAN_CHECK_EQ(image.rgb.size(), static_cast<std::size_t>(image.width) * image.height * 3);
-  return picture_codec().encode_png(image.width, image.height, image.rgb.data());
+  return encoded_as_png(image.width, image.height, image.rgb.data());
 }
 
 EncodedPicture encoded_exr(const chunker::Frame& frame) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// Picture files to samples and back, by OpenImageIO.
+/// Picture files to samples, and samples to OpenEXR, by OpenImageIO; frames become PNG without it (png_encoding.h).
 ///
 /// That library brings some 260 others with it, and loading them takes half a second, longer than planning the
-/// canyon. So it is in a module of its own (files/codec/), which is loaded when the first picture is read or
-/// written, and never by who asks for none. The module knows nothing of us but this header; what it cannot do it
+/// canyon. So it is in a module of its own (files/codec/), which is loaded when the first picture is read or an EXR
+/// written, and never by who asks for neither. The module knows nothing of us but this header; what it cannot do it
 /// says in words, and who asks makes an error of them.
 
 #include <cstdint>
@@ -58,9 +58,7 @@ struct PictureCodec {
   /// `format` is the usual file extension without the dot.
   OpenedPicture (*open_bytes)(std::span<const std::uint8_t> bytes, const std::string& format,
                               AlphaKind alpha);
-  /// 8-bit sRGB, three bytes per pixel: the same picture always gives the same bytes.
-  EncodedPicture (*encode_png)(int width, int height, const std::uint8_t* rgb);
-  /// Linear RGB as half floats, without loss of those.
+  /// Linear RGB as half floats, without loss of those: the same picture always gives the same bytes.
   EncodedPicture (*encode_exr)(int width, int height, const float* rgb);
 };
 

@@ -30,13 +30,22 @@ struct StageTimes {
   double plan_ms = 0, render_ms = 0, composite_ms = 0;
 };
 
+/// What is left of the sprite before, beside a fresh one (sequences/pipeline/cross_fading.h).
+struct FadingOut {
+  double share = 0;                       ///< (0, 1)
+  layers::dmat3 screen_from_sprite{1.0};  ///< of the old sprite
+  layers::dvec3 color{1, 1, 1};           ///< its multiplier
+};
+
 /// A sprite as it is shown in this frame, back to front.
 struct ShownSprite {
   int layer = -1;
   layers::dmat3 screen_from_sprite{1.0};
   layers::ivec2 size_px{0, 0};
   int age_frames = 0;
-  SpriteMultipliers multipliers;
+  SpriteMultipliers multipliers;   ///< without those of the colour warp where it is mixed with an old one
+  std::optional<FadingOut> old{};  ///< with which it is mixed
+  bool steps = false;              ///< drawn for this frame, or its share is not that of the frame before
   /// Of a Light layer: how far its light falls beside its base (sequences/pipeline/light_beside.h), px.
   std::optional<double> beside_base_px{};
 };
@@ -71,6 +80,7 @@ struct FrameReport {
   ShadeCounters shade;                           ///< passes behind shadows and reflections, as planned
   std::vector<ShadowMapRow> shadow_maps;         ///< one per light that has a map
   double depth_complexity = 1;                   ///< by which a budget of ms was divided
+  std::int64_t blended_pixels = 0;               ///< texels of third sprites, part of their layers' costs
   int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   StageTimes times;

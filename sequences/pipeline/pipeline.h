@@ -70,6 +70,7 @@ struct LayerMemory {
   layers::SpritePlacement placement;
   int frame_rendered = -1;  ///< when the work was done
   int depicts_frame = -1;   ///< as of which instant `then` is; later (or earlier) with Lookahead and Oracle
+  int frame_shown = -1;     ///< the last frame that showed it
   bool drawn = false;       ///< the sprite store holds that picture (false: planned only)
   std::vector<ShadowMapInstant> maps;  ///< that it looks up, where those are not simply of its own instant
   bool has_old_shadows = false;        ///< one of them was out of date already when it was drawn
@@ -94,6 +95,12 @@ struct MotionKnown {
   layers::SceneFrame before, now;  ///< `before` is `now` at frame 0
 };
 
+/// A sprite that fades out while the layer's fresh one fades in (sequences/pipeline/cross_fading.h).
+struct FadingSprite {
+  LayerMemory old;
+  int began = 0;  ///< the frame in which the fresh one was drawn
+};
+
 /// Policies Hold and Interpolate: what stands from the last beat to the next [LS97 7.2].
 struct BeatMemory {
   int frame = 0;  ///< of that beat
@@ -110,11 +117,13 @@ struct DepthMemory {
 struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline)
       : authored(pipeline.authored), layers(authored), memory(layers.size()) {}
-  LayerTable authored;              ///< of the pipeline for which `layers` was made
-  LayerTable layers;                ///< those, and behind them the aggregates that exist or have lately
-  std::vector<LayerMemory> memory;  ///< by layer id, aggregates behind the author's layers
-  chunker::SpriteStore sprites;     ///< as the compositor shows them: decompressed if they are compressed
-  CompressedSprites compressed;     ///< empty unless Settings::compression asks for it
+  LayerTable authored;                  ///< of the pipeline for which `layers` was made
+  LayerTable layers;                    ///< those, and behind them the aggregates that exist or have lately
+  std::vector<LayerMemory> memory;      ///< by layer id, aggregates behind the author's layers
+  chunker::SpriteStore sprites;         ///< as the compositor shows them: decompressed if they are compressed
+  std::map<int, FadingSprite> fading;   ///< by layer id; empty unless sprites fade
+  chunker::SpriteStore fading_sprites;  ///< of them, those that are drawn
+  CompressedSprites compressed;         ///< empty unless Settings::compression asks for it
   OrderMemory order;
   std::optional<BeatMemory> beat;     ///< empty unless the policy keeps one
   std::vector<ShadowMapMemory> maps;  ///< by light; empty where no shadow is called for

@@ -8,6 +8,8 @@
 #include "layers/check.h"
 #include "layers/effects.h"
 #include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/blended_sprites.h"
+#include "sequences/pipeline/cross_fading.h"
 #include "sequences/pipeline/depth_complexity.h"
 #include "sequences/pipeline/direct_picture.h"
 #include "sequences/pipeline/draw_instant.h"
@@ -57,7 +59,7 @@ regulator::LayerCost reference_cost(const Pipeline& pipeline, PipelineState& sta
 FrameOrder order_of(const Pipeline& pipeline, PipelineState& state, int frame) {
   if (state.beat) return standing_order(state.beat->order);
   FrameOrder order = order_layers(pipeline, state, frame);
-  if (regulator::keeps_beat(pipeline.settings.regulator.policy)) state.beat = BeatMemory{frame, order};
+  if (regulator::keeps_beat(pipeline.settings.regulator)) state.beat = BeatMemory{frame, order};
   return order;
 }
 
@@ -115,6 +117,7 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
       const int instant = looks_ahead(pipeline) && !decision.settled
                               ? decide_instant(pipeline, state, report.frame, decision)
                               : report.frame;
+      begin_fade(pipeline, state, decision.layer, report.frame);
       // The placement first: it depends on how long the old sprite lasted.
       memory.placement = captured_placement(pipeline, state, decision.layer, instant);
       memory.then = captured_states(pipeline, state, instant)[decision.layer];
@@ -129,6 +132,7 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
     }
     memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
     decision.depicts_frame = memory.depicts_frame;
+    memory.frame_shown = report.frame;
   }
   finish_shadow_maps(state, report);
 }
@@ -142,7 +146,7 @@ regulator::RegulatorOptions options_now(const Pipeline& pipeline, const Pipeline
 
 /// The sprites of this frame, back to front, each with the map that puts it in its place.
 std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineState& state,
-                                       const FrameReport& report) {
+                                       const Fades& fades, const FrameReport& report) {
   const double fades_s = time_of_fades(pipeline, state, report.frame);
   std::vector<ShownSprite> shown;
   shown.reserve(report.order.back_to_front.size());
@@ -151,10 +155,14 @@ std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineS
     const LayerMemory& memory = state.memory[layer];
     if (decision.action == Action::Drop || memory.placement.empty()) continue;
     SpriteMultipliers multipliers = multipliers_at(report.layers[layer], fades_s);
-    if constexpr (layers::is_built(layers::Effect::ColorWarp))
+    const auto fade = fades.out.find(layer);
+    const bool fades_in = fade != fades.out.end();
+    if (layers::is_built(layers::Effect::ColorWarp) && !fades_in)
       multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
                      memory.placement.size_px, report.frame - memory.frame_rendered, multipliers});
+    shown.back().steps = decision.action == Action::Rerender || fades_in || fades.ended.contains(layer);
+    if (fades_in) shown.back().old = fade->second;
     if (report.layers[layer].kind == layers::LayerKind::Light)
       shown.back().beside_base_px =
           light_beside_px(state, report, report.layers[layer],
@@ -189,6 +197,31 @@ class Instants {
   std::map<std::pair<int, int>, SceneFrame> others_;
 };
 
+/// Draws what is remembered of a layer: the picture of its own instant.
+chunker::RenderResult draw_remembered(const Pipeline& pipeline, PipelineState& state, Instants& instants,
+                                      const chunker::PreparedScene& prepared, int layer,
+                                      const LayerMemory& memory) {
+  const int instant = memory.depicts_frame;
+  const SceneFrame& frame = instants.at(memory.predicted ? memory.frame_rendered : instant, instant);
+  std::vector<HeldMap> held;
+  for (const ShadowMapInstant& map : memory.maps)
+    held.push_back({map.light, &instants.at(map.known, map.depicts_frame), map.resolution});
+  return draw_layer({pipeline, state.layers, state.shadow_maps, prepared, frame, held}, state.layers[layer],
+                    memory.placement);
+}
+
+/// Draws the sprites that fade out in this frame and were planned in frames that were not drawn.
+void draw_missing_fades(const Pipeline& pipeline, PipelineState& state, Instants& instants,
+                        const chunker::PreparedScene& prepared, FrameReport& report) {
+  for (auto& [layer, fading] : state.fading) {
+    if (fading.old.drawn) continue;
+    state.fading_sprites.put(layer,
+                             draw_remembered(pipeline, state, instants, prepared, layer, fading.old).sprite);
+    fading.old.drawn = true;
+    ++report.late_renders;
+  }
+}
+
 /// Draws the sprites that this frame shows and the store does not hold yet.
 void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
                           const chunker::PreparedScene& prepared, FrameReport& report) {
@@ -196,14 +229,7 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
   for (const ShownSprite& sprite : report.shown) {
     LayerMemory& memory = state.memory[sprite.layer];
     if (memory.drawn) continue;
-    const int instant = memory.depicts_frame;
-    const SceneFrame& frame = instants.at(memory.predicted ? memory.frame_rendered : instant, instant);
-    std::vector<HeldMap> held;
-    for (const ShadowMapInstant& map : memory.maps)
-      held.push_back({map.light, &instants.at(map.known, map.depicts_frame), map.resolution});
-    chunker::RenderResult result =
-        draw_layer({pipeline, state.layers, state.shadow_maps, prepared, frame, held},
-                   state.layers[sprite.layer], memory.placement);
+    chunker::RenderResult result = draw_remembered(pipeline, state, instants, prepared, sprite.layer, memory);
     const bool is_late = memory.frame_rendered != report.frame;
     if (const chunker::CompressionOptions* compression = compression_of(pipeline))
       keep_compressed(sprite.layer, result.sprite, *compression, state.compressed, state.sprites,
@@ -218,11 +244,13 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
       report.render_by_layer[sprite.layer] = result.counters;
     }
   }
+  draw_missing_fades(pipeline, state, instants, prepared, report);
 }
 
-chunker::PlacedSprite placed_of(const ShownSprite& sprite, const chunker::SpriteStore& sprites) {
+chunker::PlacedSprite placed_of(const ShownSprite& sprite, const chunker::SpriteStore& sprites,
+                                const BlendedSprites& blended) {
   chunker::PlacedSprite placed;
-  placed.sprite = sprites.find(sprite.layer);
+  placed.sprite = sprite.old ? &blended.at(sprite.layer) : sprites.find(sprite.layer);
   placed.screen_from_sprite = sprite.screen_from_sprite;
   placed.alpha_multiplier = sprite.multipliers.alpha;
   placed.color_multiplier = sprite.multipliers.color;
@@ -230,18 +258,18 @@ chunker::PlacedSprite placed_of(const ShownSprite& sprite, const chunker::Sprite
 }
 
 chunker::CompositeResult composite_shown(const Pipeline& pipeline, const FrameReport& report,
-                                         const chunker::SpriteStore& sprites) {
+                                         const chunker::SpriteStore& sprites, const BlendedSprites& blended) {
   const layers::ivec2 display_px = pipeline.settings.view.display_px;
   if (!report.order.resolved.empty() || any_registers(report.layers)) {
     std::vector<LayerSprite> placed;
     for (const ShownSprite& sprite : report.shown)
-      placed.push_back({sprite.layer, placed_of(sprite, sprites), report.layers[sprite.layer].base,
+      placed.push_back({sprite.layer, placed_of(sprite, sprites, blended), report.layers[sprite.layer].base,
                         use_of(report.layers[sprite.layer])});
     return composite_extended(placed, report.order, display_px, pipeline.scene.background);
   }
   std::vector<chunker::PlacedSprite> placed;
   placed.reserve(report.shown.size());
-  for (const ShownSprite& sprite : report.shown) placed.push_back(placed_of(sprite, sprites));
+  for (const ShownSprite& sprite : report.shown) placed.push_back(placed_of(sprite, sprites, blended));
   return chunker::composite(placed, display_px, pipeline.scene.background);
 }
 
@@ -260,6 +288,7 @@ std::int64_t bytes_shown(const PipelineState& state, const FrameReport& report) 
     const auto compressed = state.compressed.find(shown.layer);
     const chunker::Sprite* sprite = state.sprites.find(shown.layer);
     sum += compressed != state.compressed.end() ? compressed->second.bytes() : sprite ? sprite->bytes() : 0;
+    if (shown.old) sum += state.fading_sprites.find(shown.layer)->bytes();
   }
   return sum;
 }
@@ -277,9 +306,10 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
   } else {
     if (compression_of(pipeline)) report.compression.emplace();
     draw_missing_sprites(pipeline, state, now, prepared, report);
+    const BlendedSprites blended = blended_sprites(state, report);
     report.times.render_ms = render_watch.ms();
     const Stopwatch composite_watch;
-    result = composite_shown(pipeline, report, state.sprites);
+    result = composite_shown(pipeline, report, state.sprites, blended);
     report.times.composite_ms = composite_watch.ms();
     if (compression_of(pipeline)) report.compression->cache = chunks_read(pipeline, report, state.compressed);
   }
@@ -322,8 +352,9 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   if (measures_depth(pipeline)) measure_depth(pipeline, state, report);
   remember_renders(pipeline, state, maps, report);
+  const Fades fades = carry_fades(pipeline, state, report);
   explain_order(report);
-  report.shown = sprites_shown(pipeline, state, report);
+  report.shown = sprites_shown(pipeline, state, fades, report);
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.

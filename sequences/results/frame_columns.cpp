@@ -71,7 +71,9 @@ FrameColumns frame_work() {
               [](auto& l) -> auto& { return l.polygons.reference; }),
           counted(
               "pixels_rendered", "texels",
-              "of the rectangles of the sprites rendered, of mirrored pictures and of shadow maps",
+              "of the rectangles of the sprites rendered, of mirrored pictures, of shadow maps and of "
+              "sprites that "
+              "are mixed of an old one and a fresh one",
               [](auto& l) -> auto& { return l.pixels.rendered; }),
           counted(
               "pixels_reference", "texels", "what `reference` would draw",
@@ -81,7 +83,7 @@ FrameColumns frame_work() {
 FrameColumns drawing() {
   return {
       measured(
-          "pixels_filled", "texels", "writes by the renderer, and texels of shadow maps",
+          "pixels_filled", "texels", "writes by the renderer, texels of shadow maps and of mixed sprites",
           [](auto& l) -> auto& { return l.pixels.filled; }),
       measured(
           "pixels_composited", "pixels", "reads of sprites by the compositor",

@@ -18,7 +18,7 @@ namespace {
 /// What is known of a frame that was drawn.
 void add_drawing(FrameLine& line, const FrameReport& report) {
   line.frame_hash = hash_of(report.picture);
-  line.pixels.filled = report.render.pixels_filled + report.shade.shadow_pixels;
+  line.pixels.filled = report.render.pixels_filled + report.shade.shadow_pixels + report.blended_pixels;
   line.pixels.registers =
       report.order.resolved_counters().operators * static_cast<std::int64_t>(report.picture.pixels.size());
   line.pixels.composited = report.composite.pixels_composited;
@@ -61,17 +61,17 @@ FrameLine line_of(const FrameReport& report) {
     line.layers_in_view += d.action != regulator::Action::Drop;
   }
   line.error = error_of(report);
-  const double sprite_pixels = static_cast<double>(line.pixels.rendered);
+  const double sprite_pixels = static_cast<double>(line.pixels.rendered - report.blended_pixels);
   line.passes = {report.shade.shadow_maps_drawn, report.shade.shadow_maps_reused,
                  report.shade.reflections_drawn};
   line.polygons.rendered += report.shade.shadow_polygons;
   line.pixels.rendered += report.shade.shadow_pixels;
   line.depth_complexity = report.depth_complexity;
-  line.modelled_drawing_ms =
-      regulator::modelled_time(
-          regulator::talisman_1996(), line.polygons.rendered,
-          std::llround(sprite_pixels * line.depth_complexity) + report.shade.shadow_pixels, 0)
-          .render_ms;
+  line.modelled_drawing_ms = regulator::modelled_time(regulator::talisman_1996(), line.polygons.rendered,
+                                                      std::llround(sprite_pixels * line.depth_complexity) +
+                                                          report.shade.shadow_pixels + report.blended_pixels,
+                                                      0)
+                                 .render_ms;
   line.polygons.reference = report.reference.polygons;
   line.pixels.reference = report.reference.pixels;
   line.times.plan_ms = report.times.plan_ms;

@@ -78,7 +78,7 @@ TEST(Regulate, FirstAppearanceIsRenderedByEveryPolicyOnAnyFrameButBetweenBeats) 
   layer.has_sprite = false;
   for (const Policy policy : kAllPolicies)
     for (const int frame : {0, 1, 2, 3}) {
-      if (keeps_beat(policy) && frame % 3 != 0) continue;
+      if (keeps_beat(every(policy, 3)) && frame % 3 != 0) continue;
       const LayerDecision decision = decide(layer, every(policy, 3), frame);
       EXPECT_EQ(decision.action, Action::Rerender) << name(policy) << " frame " << frame;
       EXPECT_EQ(decision.shown_geometric_px, 0);

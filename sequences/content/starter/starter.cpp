@@ -12,6 +12,7 @@
 
 #include "sequences/content/asset_paths.h"
 #include "sequences/content/bare_model.h"
+#include "sequences/content/factoring/layers_yaml.h"
 #include "sequences/content/nearest_word.h"
 #include "sequences/content/sequence_file.h"
 #include "sequences/content/starter/documented_keys.h"
@@ -199,6 +200,16 @@ void add_ground_layer(YamlPage& page, const Source& source) {
            "one light casts: black over what it lights is exact");
 }
 
+void add_order(DocumentedKeys& out, const Source& source) {
+  if (source.bare.order.empty()) return out.off("", top(), "order");
+  std::vector<layers::LayerSpec> specs = source.bare.specs;
+  specs.emplace_back().name = source.ground;
+  out.page().comment("", out.meaning(top(), "order"));
+  std::string text = order_yaml(specs, source.bare.order);
+  text.pop_back();
+  out.page().line(text);
+}
+
 void add_layers(DocumentedKeys& out, const Source& source) {
   const MapKeys& keys = keys_below(top(), "layers");
   const layers::Scene& scene = source.bare.model.scene;
@@ -216,10 +227,12 @@ void add_layers(DocumentedKeys& out, const Source& source) {
     out.page().comment("  ", description_of(layer, scene));
     out.page().key("  - ", "name", yaml_text(layer.name), k == 0 ? out.meaning(keys, "name") : "");
     out.page().list("    ", "parts", items, k == 0 ? out.meaning(keys, "parts") : "");
+    const std::string preferences = preferences_yaml(layer.preferences);
+    if (!preferences.empty()) out.page().key("    ", "preferences", preferences);
     if (k++ == 0) add_layer_options(out);
   }
   if (source.stage.ground) add_ground_layer(out.page(), source);
-  out.off("", top(), "order");
+  add_order(out, source);
 }
 
 void add_pipeline(DocumentedKeys& out) {

@@ -69,9 +69,8 @@ PixelMask stepping_pixels(std::span<const int> shown_before, const FrameReport& 
                           const chunker::SpriteStore& sprites, ivec2 display_px) {
   PixelMask mask(static_cast<std::size_t>(display_px.x) * display_px.y, 0);
   for (const ShownSprite& sprite : now.shown) {
-    const bool drawn_again =
-        now.plan.decisions[sprite.layer].action == regulator::Action::Rerender &&
-        std::find(shown_before.begin(), shown_before.end(), sprite.layer) != shown_before.end();
+    const bool drawn_again = sprite.steps && std::find(shown_before.begin(), shown_before.end(),
+                                                       sprite.layer) != shown_before.end();
     const chunker::Sprite* picture = drawn_again ? sprites.find(sprite.layer) : nullptr;
     if (picture) mark(mask, sprite, *picture, display_px);
   }

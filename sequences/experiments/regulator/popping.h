@@ -8,7 +8,8 @@
 ///
 ///   D_f(x) = E_f(x) - E_{f-1}(x)            what the error did between two consecutive frames
 ///
-///   A_f      pixels whose centre lies in the display rectangle of a sprite that was drawn again in f and
+///   A_f      pixels whose centre lies in the display rectangle of a sprite that was drawn again in f, or whose
+///            share in a cross-fade is not that of f - 1, and
 ///            was shown in f - 1, too, at a texel that is not clear
 ///
 /// popping: RMS of D_f over the pixels of A_f and their three channels, over all frames measured

@@ -39,6 +39,21 @@ void add_thresholds(std::vector<RegulatorSetting>& settings, const RegulatorOpti
   }
 }
 
+/// What is done against the steps of sprites that are drawn again [LS97 8].
+void add_remedies(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base) {
+  for (const int n : compared_holds()) {
+    RegulatorOptions options = under(base, Policy::Interpolate);
+    options.hold_frames = n;
+    options.stagger = true;
+    settings.push_back({"interpolate staggered", "frames", double(n), options});
+  }
+  for (const int k : {1, 2, 4}) {
+    RegulatorOptions options = under(base, Policy::Threshold);
+    options.blend_frames = k;
+    settings.push_back({"threshold blended", "frames", double(k), options});
+  }
+}
+
 void add_settling(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base) {
   for (const int n : {1, 4, 16}) {
     RegulatorOptions options = under(base, Policy::Threshold);
@@ -77,6 +92,7 @@ std::vector<RegulatorSetting> regulator_settings(const RegulatorOptions& base, d
   add_periods(settings, base, Policy::Interpolate);
   add_thresholds(settings, base, Policy::Threshold, "threshold");
   add_settling(settings, base);
+  add_remedies(settings, base);
   add_thresholds(settings, base, Policy::Lookahead, "lookahead " + std::to_string(kComparedLookahead));
   add_thresholds(settings, base, Policy::Oracle, "oracle");
   add_budgets(settings, base, polygons_per_frame, regulator::ChoiceRule::Paper, "budget");

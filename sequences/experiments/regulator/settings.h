@@ -6,6 +6,9 @@
 ///   reference                                   every layer, every frame: the truth, and the full price
 ///   hold, interpolate      N = 2, 3, 5, 8       frames
 ///   threshold, lookahead 16, oracle             0.25 … 8 px in octaves, the same for all three
+///   interpolate staggered  N = 2, 3, 5, 8       frames; each layer on a beat of its own
+///   threshold blended      K = 1, 2, 4          frames over which a fresh sprite fades in, at the sequence's own
+///                                               threshold (sequences/pipeline/cross_fading.h)
 ///   threshold settled      N = 1, 4, 16         frames at rest after which what is enlarged is drawn again, at the
 ///                                               sequence's own threshold (regulator/settle.h)
 ///   budget, budget best    5 … 80 %             of the polygons that `reference` draws per frame, chosen as in the

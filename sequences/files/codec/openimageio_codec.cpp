@@ -11,7 +11,6 @@ namespace {
 
 /// A date that is plainly none.
 constexpr const char* kNoDate = "1970:01:01 00:00:00";
-constexpr int kPngFilterSub = 0x10;  // PNG_FILTER_SUB of png.h
 
 class Reader : public PictureReader {
  public:
@@ -83,17 +82,6 @@ EncodedPicture encode(const std::string& name, const OIIO::ImageSpec& spec, cons
   return encoded;
 }
 
-EncodedPicture encode_png(int width, int height, const std::uint8_t* rgb) {
-  OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::UINT8);
-  // Run lengths of differences to the left: on frames of the canyon an eighth of the time of the defaults for
-  // 9 % more bytes; level 1 with filters chosen line by line takes twice as long for 8 % more again.
-  spec.attribute("png:compressionLevel", 1);
-  spec.attribute("compression", "rle");
-  spec.attribute("png:filter", kPngFilterSub);
-  spec.attribute("oiio:ColorSpace", "sRGB");
-  return encode("picture.png", spec, OIIO::TypeDesc::UINT8, rgb);
-}
-
 EncodedPicture encode_exr(int width, int height, const float* rgb) {
   OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::HALF);
   spec.attribute("compression", "piz");  // lossless, as quick as none, a fifth of the bytes
@@ -105,7 +93,7 @@ EncodedPicture encode_exr(int width, int height, const float* rgb) {
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) const PictureCodec* talisman_picture_codec() {
-  static constexpr PictureCodec codec{open, open_bytes, encode_png, encode_exr};
+  static constexpr PictureCodec codec{open, open_bytes, encode_exr};
   return &codec;
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Picture files are read and written by a module that is loaded when the first one is: who asks for no picture does
-// not wait for it, and where it is missing the tool says so.
+// Picture files are read by a module that is loaded when the first one is: who reads no picture does not wait for it,
+// frames are written without it, and where it is missing the tool says so.
 #include "sequences/files/image_io.h"
 #include "sequences/files/loaded_code.h"
 #include "tests/sequences/commands/tool.h"
@@ -23,6 +23,7 @@ TEST_F(PictureModule, ToolAndImporterDoNotWaitForPictureLibraries) {
 
 TEST_F(PictureModule, IsLoadedByTheFirstPicture) {
   sequences::write_png(path("a.png"), {1, 1, {1, 2, 3}});
+  (void)sequences::read_image(path("a.png"));
   std::string loaded;
   for (const std::string& file : sequences::loaded_code()) loaded += file + "\n";
   EXPECT_THAT(loaded, HasSubstr("talisman_pictures.so"));
@@ -37,6 +38,20 @@ TEST_F(PictureModule, ThatIsMissingIsSaidAndTheRestWorks) {
   EXPECT_EQ(compared.exit_code, 1);
   EXPECT_THAT(compared.output, HasSubstr("error: pictures cannot be read or written: "));
   EXPECT_THAT(compared.output, HasSubstr("talisman_pictures.so"));
+}
+
+TEST_F(PictureModule, IsNotNeededByFramesOfShapes) {
+  write("ball.yaml", "frames: 1\nshapes: [{id: ball, sphere: 1, color: '#ff8000', unlit: true}]\n");
+  std::filesystem::copy_file(tool(), path("talisman"));
+  const std::string render =
+      "env -u TALISMAN_HOME ./talisman render ball.yaml --size 16x16 --progress none --out ";
+  EXPECT_EQ(run_shell(render + "png").exit_code, 0);
+  const sequences::Image8 frame = sequences::read_image(path("png/frames/0000.png"));
+  const std::size_t middle = 3 * (8 * 16 + 8);
+  EXPECT_THAT(std::vector(&frame.rgb[middle], &frame.rgb[middle] + 3), ::testing::ElementsAre(255, 128, 0));
+  const Outcome exr = run_shell(render + "exr --format exr");
+  EXPECT_EQ(exr.exit_code, 1);
+  EXPECT_THAT(exr.output, HasSubstr("talisman_pictures.so"));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/commands/inspect_order.h"
+#include "sequences/commands/inspect/inspect_order.h"
 #include "sequences/commands/options.h"
 #include "sequences/content/layer_pairs.h"
 #include "sequences/results/summary.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/results/split_layer.h"
+#include "sequences/results/factoring/split_layer.h"
 
 #include <algorithm>
 #include <set>
@@ -8,6 +8,7 @@
 #include "sequences/files/errors.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page.h"
+#include "sequences/results/factoring/plan_sums.h"
 
 namespace talisman::sequences {
 
@@ -94,18 +95,6 @@ void add_split_row(Table& table, const Summary& summary, const std::string& name
                         fixed(row->render_ms / frames, 3)});
 }
 
-int all_renders_of(const Summary& summary) {
-  int sum = 0;
-  for (const LayerSummary& row : summary.layers) sum += row.renders;
-  return sum;
-}
-
-double modelled_ms(const Summary& summary) {
-  double sum = 0;
-  for (const LayerSummary* row : summary.rows()) sum += row->render_ms;
-  return summary.frames.empty() ? 0 : sum / static_cast<double>(summary.frames.size());
-}
-
 std::string changed_by(double now, double then) {
   return now > 0 ? formatted("%+.1f %%", 100 * (then / now - 1)) : "";
 }
@@ -146,7 +135,7 @@ std::string split_table(const Summary& now, const Summary& split, const std::str
   const auto add = [&](const char* name, double a, double b, int digits) {
     sums.rows.push_back({name, fixed(a, digits), fixed(b, digits), changed_by(a, b)});
   };
-  add("renders", all_renders_of(now), all_renders_of(split), 0);
+  add("renders", renders_in(now), renders_in(split), 0);
   add("polygons", static_cast<double>(now.polygons_rendered()),
       static_cast<double>(split.polygons_rendered()), 0);
   add("texels", static_cast<double>(now.pixels_rendered()), static_cast<double>(split.pixels_rendered()), 0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/commands/inspect_parts.h"
+#include "sequences/commands/inspect/inspect_parts.h"
 
 #include <filesystem>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/commands/inspect_order.h"
+#include "sequences/commands/inspect/inspect_order.h"
 
 #include <algorithm>
 #include <cstdio>

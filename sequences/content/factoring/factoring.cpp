@@ -1,0 +1,336 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/content/factoring/factoring.h"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <set>
+
+#include "sequences/files/number_text.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using layers::LayerSpec;
+
+/// Layers times frames that a comparison plans, of each factoring: a second or two of the longest.
+constexpr int kMostPlanned = 60'000;
+
+/// Rounds in which pairs that are missing are added. Each may uncover others behind them.
+constexpr int kOrderRounds = 3;
+
+/// Share of the frames in which layers share a sprite anyway that makes them one.
+constexpr double kSharedShare = 0.5;
+
+/// What is joined may meet others; what is split may be split again.
+constexpr int kJoinRounds = 2, kSplitRounds = 2;
+
+using Groups = std::vector<std::vector<int>>;
+
+std::vector<double> times_of(const std::vector<int>& frames, double fps) {
+  std::vector<double> times;
+  for (const int frame : frames) times.push_back(frame / fps);
+  return times;
+}
+
+/// As many as the triangles allow, all of which are looked at in each.
+std::vector<int> instants_of(const Unfactored& scene) {
+  std::int64_t triangles = 1;
+  for (const layers::Part& part : scene.scene.parts)
+    triangles += scene.scene.meshes[part.mesh].triangle_count();
+  const auto affordable = std::max<std::int64_t>(4, kMostDepthTriangles / triangles);
+  return spread_frames(scene.settings.frames,
+                       static_cast<int>(std::min<std::int64_t>(kMostInstants, affordable)));
+}
+
+/// A piece for each node as groups of pieces: those of which the parts are in it.
+Groups groups_by_node(const layers::Scene& scene, const Pieces& pieces, const Pieces& nodes) {
+  std::vector<int> node_of(scene.parts.size(), -1);
+  for (std::size_t i = 0; i < nodes.free; ++i)
+    for (const int part : nodes.layers[i].parts) node_of[part] = static_cast<int>(i);
+  Groups groups(nodes.free);
+  for (std::size_t i = 0; i < pieces.free; ++i) {
+    const int node = node_of[pieces.layers[i].parts.front()];
+    if (node >= 0) groups[node].push_back(static_cast<int>(i));
+  }
+  std::erase_if(groups, [](const std::vector<int>& group) { return group.empty(); });
+  return groups;
+}
+
+class Study {
+ public:
+  Study(const Unfactored& scene, const AutoLayers& options)
+      : scene_(scene), options_(options), instants_(instants_of(scene)) {
+    pieces_ = pieces_of(scene.scene, scene.kept);
+    nodes_ = groups_by_node(scene.scene, pieces_, node_pieces_of(scene.scene, scene.kept));
+    if (pieces_.free > kMostFactoredPieces) {
+      pieces_ = node_pieces_of(scene.scene, scene.kept);
+      nodes_.clear();
+      for (std::size_t i = 0; i < pieces_.free; ++i) nodes_.push_back({static_cast<int>(i)});
+    }
+  }
+
+  FactoringStudy run() {
+    const bool by_node = options_.way == FactoringWay::Node;
+    if (pieces_.free > 1 && pieces_.free <= kMostFactoredPieces && (!by_node || too_many_nodes())) look();
+    std::vector<Factoring> all = by_node || !data_ ? by_nodes() : by_velocity();
+    FactoringStudy result;
+    const auto best = std::min_element(all.begin(), all.end(), [](const Factoring& a, const Factoring& b) {
+      return a.plan.work_ms() < b.plan.work_ms();
+    });
+    result.chosen = std::move(*best);
+    all.erase(best);
+    std::erase_if(all, [](const Factoring& f) { return f.how == "velocity"; });
+    result.others = std::move(all);
+    if (data_) result.nearest_joins = nearest_joins(result.chosen);
+    result.pieces = std::move(pieces_);
+    result.instants = data_ ? instants_ : std::vector<int>{};
+    return result;
+  }
+
+ private:
+  struct Data {
+    PieceMotion motion;
+    DepthSamples depths;
+  };
+
+  bool too_many_nodes() const { return nodes_.size() > static_cast<std::size_t>(options_.max); }
+
+  void look() {
+    data_.emplace(Data{{scene_.scene, pieces_.layers, scene_.settings, instants_},
+                       {scene_.scene, pieces_.layers, times_of(instants_, scene_.settings.fps),
+                        scene_.settings.view.display_px}});
+  }
+  GroupingData data() const { return {pieces_, data_->motion, data_->depths, scene_.settings.frames}; }
+
+  Groups alone() const {
+    Groups groups;
+    for (int piece = 0; piece < static_cast<int>(pieces_.free); ++piece) groups.push_back({piece});
+    return groups;
+  }
+
+  std::vector<int> everything() const {
+    std::vector<int> all(pieces_.free);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
+  }
+
+  /// Nodes as pieces, joined where there are too many.
+  Groups limited_nodes() const { return grouped(data(), {options_.max, true}, nodes_); }
+
+  /// Of nodes that are too many to look at: the largest, and one layer for the rest.
+  Groups largest_nodes() const {
+    Groups groups = nodes_;
+    const auto most = static_cast<std::size_t>(options_.max);
+    if (groups.size() <= most) return groups;
+    const auto polygons = [&](const std::vector<int>& group) {
+      int sum = 0;
+      for (const int piece : group) sum += pieces_.layers[piece].polygons;
+      return sum;
+    };
+    std::stable_sort(groups.begin(), groups.end(),
+                     [&](const auto& a, const auto& b) { return polygons(a) > polygons(b); });
+    for (; groups.size() > most; groups.pop_back())
+      groups[most - 1].insert(groups[most - 1].end(), groups.back().begin(), groups.back().end());
+    return groups;
+  }
+
+  Factoring factoring_of(const std::string& how, const Groups& groups) const {
+    Factoring f;
+    f.how = how;
+    f.specs = scene_.kept;
+    const std::vector<LayerSpec> own = specs_of_groups(scene_.scene, scene_.kept, pieces_, groups);
+    f.specs.insert(f.specs.end(), own.begin(), own.end());
+    for (std::size_t i = pieces_.free; i < pieces_.layers.size(); ++i)
+      f.pieces.push_back({static_cast<int>(i)});
+    f.pieces.insert(f.pieces.end(), groups.begin(), groups.end());
+    return f;
+  }
+
+  int frames_planned(std::size_t layers) const {
+    return std::clamp(kMostPlanned / static_cast<int>(std::max<std::size_t>(layers, 1)), 1,
+                      std::max(scene_.settings.frames, 1));
+  }
+
+  void plan(Factoring& f) const {
+    f.plan = plan_of(scene_.scene, f.specs, f.pairs(), scene_.settings, frames_);
+  }
+
+  Sharing sharing(const Factoring& f) const {
+    return sharing_of(scene_.scene, f.specs, f.pairs(), scene_.settings, instants_);
+  }
+
+  /// With pairs where the bounds know no order.
+  Factoring in_order(const std::string& how, const Groups& groups) const {
+    Factoring f = factoring_of(how, groups);
+    std::vector<layers::OrderGroup> places;
+    for (const LayerSpec& spec : f.specs) places.push_back(spec.group);
+    for (int round = 0; round < kOrderRounds; ++round) {
+      std::set<SpecPair> asked(f.asked.begin(), f.asked.end());
+      for (const auto& [pair, frames] : sharing(f).frames) asked.insert(pair);
+      if (asked.size() == f.asked.size()) break;
+      f.asked.assign(asked.begin(), asked.end());
+      f.order = seen_order(data_->depths, f.pieces, places, f.asked);
+    }
+    return f;
+  }
+
+  std::vector<Factoring> by_nodes() {
+    std::vector<Factoring> all{factoring_of("node", data_ ? limited_nodes() : largest_nodes())};
+    frames_ = frames_planned(all[0].specs.size());
+    plan(all[0]);
+    return all;
+  }
+
+  /// All over the same frames.
+  std::vector<Factoring> by_velocity() {
+    const Groups bodies = bodies_of(scene_.scene, pieces_);
+    frames_ = frames_planned(std::max(bodies.size(), nodes_.size()) + scene_.kept.size());
+    std::vector<Factoring> all;
+    for (const Groups& start : {alone(), bodies, nodes_})
+      add_by_velocity(grouped(data(), {options_.max, false}, start), all);
+    for (int round = 0; round < kSplitRounds; ++round) {
+      const auto best = std::min_element(all.begin(), all.end(), [](const Factoring& a, const Factoring& b) {
+        return a.plan.work_ms() < b.plan.work_ms();
+      });
+      if (!add_once(split_where_cheaper(*best, bodies), all)) break;
+    }
+    if (nodes_.size() <= static_cast<std::size_t>(options_.max)) {
+      all.push_back(factoring_of("node", nodes_));
+      plan(all.back());
+    }
+    all.push_back(factoring_of("one", {everything()}));
+    plan(all.back());
+    return all;
+  }
+
+  /// Orders and plans the groups; false: they are there already.
+  bool add_once(Groups groups, std::vector<Factoring>& all) const {
+    std::sort(groups.begin(), groups.end());
+    const auto first = static_cast<std::ptrdiff_t>(scene_.kept.size());
+    for (const Factoring& f : all)
+      if (std::equal(f.pieces.begin() + first, f.pieces.end(), groups.begin(), groups.end())) return false;
+    all.push_back(in_order("velocity", groups));
+    plan(all.back());
+    return true;
+  }
+
+  /// The groups, and the same with those joined that share a sprite in most of the frames anyway.
+  void add_by_velocity(Groups groups, std::vector<Factoring>& all) const {
+    for (int round = 0; round <= kJoinRounds && add_once(groups, all); ++round)
+      groups = joined_where_shared(all.back());
+  }
+
+  /// The same with groups apart again that a plan, in which each layer is alone, shows to be dearer than the bodies in
+  /// them: where the estimate was wrong.
+  Groups split_where_cheaper(const Factoring& f, const Groups& bodies) const {
+    const std::size_t first = scene_.kept.size();
+    Groups looked_at;
+    std::vector<std::size_t> owner;  // the group of which each is a part, or itself
+    for (std::size_t i = first; i < f.pieces.size(); ++i) {
+      const std::size_t before = looked_at.size();
+      looked_at.push_back(f.pieces[i]);
+      for (const std::vector<int>& body : bodies)
+        if (body.size() < f.pieces[i].size() &&
+            std::includes(f.pieces[i].begin(), f.pieces[i].end(), body.begin(), body.end()))
+          looked_at.push_back(body);
+      std::size_t covered = 0;
+      for (std::size_t k = before + 1; k < looked_at.size(); ++k) covered += looked_at[k].size();
+      if (covered < f.pieces[i].size()) looked_at.resize(before + 1);
+      owner.resize(looked_at.size(), before);
+    }
+    const std::vector<PlannedFactoring> plans = plans_of_parts(looked_at);
+    Groups groups;
+    for (std::size_t i = 0; i < looked_at.size();) {
+      std::size_t end = i + 1;
+      double parts_ms = 0;
+      for (; end < looked_at.size() && owner[end] == i; ++end) parts_ms += plans[end].work_ms();
+      const bool is_split = end > i + 1 && parts_ms < plans[i].work_ms() &&
+                            groups.size() + (end - i - 1) <= static_cast<std::size_t>(options_.max);
+      if (is_split)
+        groups.insert(groups.end(), looked_at.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                      looked_at.begin() + static_cast<std::ptrdiff_t>(end));
+      else
+        groups.push_back(looked_at[i]);
+      i = end;
+    }
+    return groups.size() <= static_cast<std::size_t>(options_.max)
+               ? groups
+               : Groups(f.pieces.begin() + static_cast<std::ptrdiff_t>(first), f.pieces.end());
+  }
+
+  std::vector<PlannedFactoring> plans_of_parts(const Groups& groups) const {
+    std::vector<LayerSpec> specs;
+    for (const std::vector<int>& group : groups)
+      specs.push_back(specs_of_groups(scene_.scene, {}, pieces_, {group}).front());
+    return plans_apart(scene_.scene, specs, scene_.settings, frames_);
+  }
+
+  Groups joined_where_shared(const Factoring& f) const {
+    const std::size_t first = scene_.kept.size();
+    std::vector<std::size_t> root(f.specs.size());
+    std::iota(root.begin(), root.end(), 0);
+    const Sharing sharing = this->sharing(f);
+    for (const auto& [pair, frames] : sharing.frames) {
+      const auto [a, b] = pair;
+      const int shown = std::min(sharing.frames_shown[a], sharing.frames_shown[b]);
+      if (a < first || b < first || frames < kSharedShare * shown || root[a] == root[b]) continue;
+      const std::size_t from = std::max(root[a], root[b]), to = std::min(root[a], root[b]);
+      std::replace(root.begin(), root.end(), from, to);
+    }
+    Groups groups(f.specs.size());
+    for (std::size_t i = first; i < f.specs.size(); ++i)
+      groups[root[i]].insert(groups[root[i]].end(), f.pieces[i].begin(), f.pieces[i].end());
+    std::erase_if(groups, [](const std::vector<int>& group) { return group.empty(); });
+    for (std::vector<int>& group : groups) std::sort(group.begin(), group.end());
+    return groups;
+  }
+
+  std::vector<SpecPair> nearest_joins(const Factoring& f) const {
+    const std::size_t first = scene_.kept.size();
+    std::vector<double> ms(f.specs.size());
+    for (std::size_t i = first; i < ms.size(); ++i) ms[i] = work_of(data(), f.pieces[i]).ms;
+    std::vector<std::pair<double, SpecPair>> joins;
+    for (std::size_t i = first; i < ms.size(); ++i)
+      for (std::size_t k = i + 1; k < ms.size(); ++k) {
+        std::vector<int> both = f.pieces[i];
+        both.insert(both.end(), f.pieces[k].begin(), f.pieces[k].end());
+        joins.push_back({work_of(data(), both).ms - ms[i] - ms[k], {i, k}});
+      }
+    std::sort(joins.begin(), joins.end());
+    joins.resize(std::min(joins.size(), kNearestJoins));
+    std::vector<SpecPair> pairs;
+    for (const auto& [more_ms, pair] : joins) pairs.push_back(pair);
+    return pairs;
+  }
+
+  const Unfactored& scene_;
+  AutoLayers options_;
+  std::vector<int> instants_;
+  Pieces pieces_;
+  Groups nodes_;
+  std::optional<Data> data_;
+  int frames_ = 1;  ///< that comparisons plan
+};
+
+}  // namespace
+
+std::vector<SpecPair> Factoring::pairs() const {
+  std::vector<SpecPair> pairs;
+  for (const SeenPair& seen : order) pairs.push_back(seen.pair);
+  return pairs;
+}
+
+std::string hidden_in_words(const Factoring& factoring, const SeenPair& seen) {
+  return formatted(
+      "layer '%s' is drawn over '%s', which hides it at %.2g %% of the pixels at which both were seen",
+      factoring.specs[seen.pair.second].name.c_str(), factoring.specs[seen.pair.first].name.c_str(),
+      100 * seen.hidden);
+}
+
+FactoringStudy study(const Unfactored& scene, const AutoLayers& options) {
+  return Study(scene, options).run();
+}
+
+}  // namespace talisman::sequences

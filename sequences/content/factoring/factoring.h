@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// Layers that nobody wrote: from the parts of a scene and how they move on the display to layers and their order
+/// [LS97 2.1].
+///
+///   node       a layer for each moving node, or for each top-level node where nothing moves
+///   velocity   parts that move alike on the display and lie together are one layer (grouping.h), in the order in which
+///              they were seen (seen_order.h). What comes out is planned, as are one layer per node and one for all, and
+///              the cheapest is taken: no proposal costs more than either.
+///
+/// Another way is a value of FactoringWay, its word in factoring_keys.cpp, and a function from Pieces to groups in
+/// `factored`.
+
+#include <string>
+#include <vector>
+
+#include "sequences/content/factoring/grouping.h"
+#include "sequences/content/factoring/seen_order.h"
+
+namespace talisman::sequences {
+
+enum class FactoringWay { Node, Velocity };
+
+inline constexpr int kMostLayersByDefault = 40;
+inline constexpr int kMostLayers = 1000;
+
+struct AutoLayers {
+  FactoringWay way = FactoringWay::Velocity;
+  int max = kMostLayersByDefault;  ///< 1 … kMostLayers
+  bool operator==(const AutoLayers&) const = default;
+};
+
+/// Beyond this many pieces nothing is factored by motion: the nodes are. Memory grows with the square.
+inline constexpr std::size_t kMostFactoredPieces = 1024;
+
+/// What is to be factored.
+struct Unfactored {
+  const layers::Scene& scene;
+  std::vector<layers::LayerSpec> kept;  ///< layers that are there already: they take their parts first
+  Settings settings;                    ///< under which it is planned
+};
+
+struct Factoring {
+  std::string how;                       ///< "velocity", "node", "one": of which the layers are
+  std::vector<layers::LayerSpec> specs;  ///< those that were kept first
+  std::vector<std::vector<int>> pieces;  ///< by spec: what each has
+  std::vector<SeenPair> order;
+  PlannedFactoring plan;
+  std::vector<SpecPair> asked;  ///< of which pairs the bounds knew no order
+
+  std::vector<SpecPair> pairs() const;
+};
+
+/// "layer 'ship' is drawn over 'land', which hides it at 0.4 % of the pixels that both were seen at".
+std::string hidden_in_words(const Factoring& factoring, const SeenPair& seen);
+
+/// Every layer that was looked at, and what was found on the way.
+struct FactoringStudy {
+  Pieces pieces;
+  std::vector<int> instants;  ///< frames in which motion and depth were looked at
+  Factoring chosen;
+  std::vector<Factoring>
+      others;  ///< the rest of "velocity", "node", "one"; those with too many layers are left out
+  /// Pairs of chosen layers, by index of their specs, that it would be the least bad to join, the best first.
+  std::vector<SpecPair> nearest_joins;
+};
+
+/// The pairs that are listed at most.
+inline constexpr std::size_t kNearestJoins = 8;
+
+FactoringStudy study(const Unfactored& scene, const AutoLayers& options);
+
+}  // namespace talisman::sequences

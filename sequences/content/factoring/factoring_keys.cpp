@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/content/factoring/factoring_keys.h"
+
+namespace talisman::sequences {
+
+const Table<AutoLayers>& auto_layers_keys() {
+  static const Table<AutoLayers> table =
+      Table<AutoLayers>("auto")
+          .key("auto", &AutoLayers::way,
+               choice<FactoringWay>({{"node", FactoringWay::Node}, {"velocity", FactoringWay::Velocity}}), "",
+               "`node`: one per moving node, or per top-level node where nothing moves; `velocity`: parts "
+               "that move "
+               "alike on the display and lie together, never dearer than `node`")
+          .required()
+          .key("max", &AutoLayers::max, whole(1, kMostLayers), "layers",
+               "no more than so many are made; those that a model's author named are not counted");
+  return table;
+}
+
+}  // namespace talisman::sequences

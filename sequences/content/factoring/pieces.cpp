@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/content/factoring/pieces.h"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "layers/animation.h"
+#include "sequences/content/default_view.h"
+#include "sequences/content/starter/part_globs.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using layers::dvec3;
+using layers::Layer;
+using layers::LayerSpec;
+
+/// Parts of one body touch: their boxes, in the space of what carries them, are no farther apart than this share of
+/// the larger one's diagonal.
+constexpr double kTouch = 0.05;
+
+std::string glob_of(std::string name) {
+  std::replace(name.begin(), name.end(), '*', '?');
+  return name;
+}
+
+/// `kept` takes its parts first; the pieces are those of `own` that are left any.
+Pieces pieces_between(const layers::Scene& scene, std::span<const LayerSpec> kept,
+                      std::vector<LayerSpec> own) {
+  std::vector<LayerSpec> specs(kept.begin(), kept.end());
+  for (LayerSpec& spec : specs) spec.shading = {};
+  for (LayerSpec& spec : own) spec.name = "piece " + std::to_string(specs.size()), specs.push_back(spec);
+  layers::LayerSet set = layers::factor(scene, specs);
+  Pieces pieces;
+  for (std::size_t i = kept.size(); i < set.layers.size(); ++i)
+    if (!set.layers[i].parts.empty()) pieces.layers.push_back(std::move(set.layers[i]));
+  pieces.free = pieces.layers.size();
+  for (std::size_t i = 0; i < kept.size(); ++i) pieces.layers.push_back(std::move(set.layers[i]));
+  for (std::size_t i = 0; i < pieces.layers.size(); ++i) pieces.layers[i].id = static_cast<int>(i);
+  return pieces;
+}
+
+struct Box {
+  dvec3 lo{HUGE_VAL}, hi{-HUGE_VAL};
+  double diagonal() const { return glm::length(hi - lo); }
+};
+
+Box box_of(const layers::SceneFrame& frame, const layers::Part& part) {
+  Box box;
+  for (const dvec3& p : layers::world_positions(frame, part)) {
+    box.lo = glm::min(box.lo, p);
+    box.hi = glm::max(box.hi, p);
+  }
+  return box;
+}
+
+bool touch(const Box& a, const Box& b) {
+  const double reach = kTouch * std::max(a.diagonal(), b.diagonal());
+  for (int axis = 0; axis < 3; ++axis)
+    if (a.lo[axis] - reach > b.hi[axis] || b.lo[axis] - reach > a.hi[axis]) return false;
+  return true;
+}
+
+/// Boxes that are reached from each other by touching, as lists of their indices.
+std::vector<std::vector<std::size_t>> touching(const std::vector<Box>& boxes) {
+  std::vector<std::vector<std::size_t>> clusters;
+  std::vector<bool> reached(boxes.size());
+  for (std::size_t first = 0; first < boxes.size(); ++first) {
+    if (reached[first]) continue;
+    std::vector<std::size_t> cluster{first};
+    reached[first] = true;
+    for (std::size_t k = 0; k < cluster.size(); ++k)
+      for (std::size_t i = 0; i < boxes.size(); ++i)
+        if (!reached[i] && touch(boxes[cluster[k]], boxes[i])) reached[i] = true, cluster.push_back(i);
+    clusters.push_back(std::move(cluster));
+  }
+  return clusters;
+}
+
+/// The moving node that all parts follow rigidly; -1: there is none.
+int carrier_of(const layers::Scene& scene, const std::vector<int>& carriers, const std::vector<int>& parts) {
+  const int carrier = carriers[scene.parts[parts[0]].node];
+  for (const int part : parts)
+    if (layers::deforms(scene, scene.parts[part]) || carriers[scene.parts[part].node] != carrier) return -1;
+  return carrier;
+}
+
+/// Do all parts follow one moving node, and lie together?
+bool is_one_body(const layers::SceneFrame& frame, const std::vector<int>& carriers,
+                 const std::vector<int>& parts) {
+  if (carrier_of(*frame.scene, carriers, parts) < 0) return false;
+  std::vector<Box> boxes;
+  for (const int part : parts) boxes.push_back(box_of(frame, frame.scene->parts[part]));
+  return touching(boxes).size() == 1;
+}
+
+/// "wing", "wing and 3 more".
+std::string name_of(const layers::Scene& scene, const Pieces& pieces, const std::vector<int>& group) {
+  const int largest = *std::max_element(group.begin(), group.end(), [&](int a, int b) {
+    return pieces.layers[a].polygons < pieces.layers[b].polygons;
+  });
+  const std::string& name = scene.parts[pieces.layers[largest].parts.front()].name;
+  return group.size() == 1 ? name : name + " and " + std::to_string(group.size() - 1) + " more";
+}
+
+/// "leader" of leader/hull and leader/wing: the shortest beginning up to a "/" that these parts alone have; empty: none.
+std::string common_node(const layers::Scene& scene, const std::vector<int>& parts) {
+  const std::string& first = scene.parts[parts.front()].name;
+  const auto begins = [&](int part, const std::string& with) {
+    return scene.parts[part].name.rfind(with, 0) == 0;
+  };
+  for (std::size_t slash = first.find('/', 1); slash != std::string::npos;
+       slash = first.find('/', slash + 1)) {
+    const std::string beginning = first.substr(0, slash + 1);
+    if (!std::all_of(parts.begin(), parts.end(), [&](int part) { return begins(part, beginning); }))
+      return "";
+    bool is_theirs = true;
+    for (int part = 0; part < static_cast<int>(scene.parts.size()); ++part)
+      is_theirs =
+          is_theirs && (!begins(part, beginning) || std::binary_search(parts.begin(), parts.end(), part));
+    if (is_theirs) return beginning.substr(0, slash);
+  }
+  return "";
+}
+
+}  // namespace
+
+Pieces pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept) {
+  std::vector<LayerSpec> own;
+  std::set<std::string> seen;
+  for (const layers::Part& part : scene.parts)
+    if (seen.insert(part.name).second) own.emplace_back().part_globs = {glob_of(part.name)};
+  return pieces_between(scene, kept, std::move(own));
+}
+
+Pieces node_pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept) {
+  return pieces_between(scene, kept, layers::default_layer_specs(scene));
+}
+
+std::vector<std::vector<int>> bodies_of(const layers::Scene& scene, const Pieces& pieces) {
+  const std::vector<int> carriers = layers::moving_carriers(scene);
+  const layers::SceneFrame frame = scene.at(0);
+  std::map<int, std::vector<int>> carried;
+  std::vector<std::vector<int>> bodies;
+  for (int piece = 0; piece < static_cast<int>(pieces.free); ++piece) {
+    const int carrier = carrier_of(scene, carriers, pieces.layers[piece].parts);
+    if (carrier < 0)
+      bodies.push_back({piece});
+    else
+      carried[carrier].push_back(piece);
+  }
+  for (const auto& [carrier, of] : carried) {
+    std::vector<Box> boxes;
+    for (const int piece : of) {
+      Box box;
+      for (const int part : pieces.layers[piece].parts) {
+        const Box more = box_of(frame, scene.parts[part]);
+        box.lo = glm::min(box.lo, more.lo);
+        box.hi = glm::max(box.hi, more.hi);
+      }
+      boxes.push_back(box);
+    }
+    for (const std::vector<std::size_t>& cluster : touching(boxes)) {
+      std::vector<int>& body = bodies.emplace_back();
+      for (const std::size_t i : cluster) body.push_back(of[i]);
+      std::sort(body.begin(), body.end());
+    }
+  }
+  std::sort(bodies.begin(), bodies.end());
+  return bodies;
+}
+
+std::vector<LayerSpec> specs_of_groups(const layers::Scene& scene, std::span<const LayerSpec> kept,
+                                       const Pieces& pieces, const std::vector<std::vector<int>>& groups) {
+  std::vector<Layer> taking(pieces.layers.begin() + static_cast<std::ptrdiff_t>(pieces.free),
+                            pieces.layers.end());
+  const std::size_t others = taking.size();
+  for (const std::vector<int>& group : groups) {
+    Layer layer;
+    for (const int piece : group)
+      layer.parts.insert(layer.parts.end(), pieces.layers[piece].parts.begin(),
+                         pieces.layers[piece].parts.end());
+    std::sort(layer.parts.begin(), layer.parts.end());
+    taking.push_back(std::move(layer));
+  }
+  std::vector<std::string> names;
+  for (const layers::Part& part : scene.parts) names.push_back(part.name);
+  const std::vector<std::vector<std::string>> globs = part_globs(taking, names);
+
+  const layers::SceneFrame frame = scene.at(0);
+  const std::vector<int> carriers = layers::moving_carriers(scene);
+  std::set<std::string> used;
+  for (const LayerSpec& spec : kept) used.insert(spec.name);
+  std::vector<LayerSpec> specs;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const std::vector<int>& parts = taking[others + i].parts;
+    LayerSpec spec;
+    const std::string node = groups[i].size() > 1 ? common_node(scene, parts) : "";
+    spec.name = unused_name(used, node.empty() ? name_of(scene, pieces, groups[i]) : node);
+    used.insert(spec.name);
+    spec.part_globs = globs[others + i];
+    if (parts.size() > 1 && !is_one_body(frame, carriers, parts)) spec.preferences.bound_each_part = true;
+    specs.push_back(std::move(spec));
+  }
+  return specs;
+}
+
+}  // namespace talisman::sequences

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// The third sprites of a frame: fresh ones mixed with those that fade out (chunker/cross_fade.h), as the plan says
+/// (cross_fading.h).
+
+#include <map>
+
+#include "sequences/pipeline/frame_report.h"
+#include "sequences/pipeline/pipeline.h"
+
+namespace talisman::sequences {
+
+/// By layer id; empty where nothing fades. They live as long as their frame.
+using BlendedSprites = std::map<int, chunker::Sprite>;
+
+/// All sprites that the frame shows and those that fade out are drawn.
+BlendedSprites blended_sprites(const PipelineState& state, const FrameReport& report);
+
+}  // namespace talisman::sequences
