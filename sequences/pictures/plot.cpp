@@ -231,11 +231,22 @@ std::string legend_rows_words(std::size_t rows, int room_px) {
   return " maxrows " + std::to_string(rows) + " spacing " + number(spacing);
 }
 
+/// Slanted, so that they stand beside each other.
+std::string name_tics(const char* which, const std::vector<std::string>& names) {
+  constexpr double kRoom_px = 110;
+  std::string text;
+  for (std::size_t k = 0; k < names.size(); ++k)
+    text += (text.empty() ? "" : ", ") + quoted(fitted_text(names[k], kLabelFont_px, kRoom_px)) + " " +
+            std::to_string(k + 1);
+  return std::string("set ") + which + "tics rotate by -40 font 'Helvetica,11' (" + text + ")\n";
+}
+
 std::string axis_words(const char* which, const PlotAxis& axis, const AxisRange& range, int length_px,
                        int most) {
   std::string text = std::string("set ") + which + "label " +
                      quoted(fitted_text(with_unit(axis, " (", ")"), kTextFont_px, length_px + 60)) + "\n";
   text += std::string("set ") + which + "range [" + number(range.lo) + ":" + number(range.hi) + "]\n";
+  if (!axis.names.empty()) text += name_tics(which, axis.names);
   if (axis.logarithmic) text += std::string("set logscale ") + which + "\n" + tic_words(which, range, most);
   return text;
 }

@@ -43,7 +43,8 @@ struct PlotAxis {
   std::string label;  ///< quantity: "update rate"
   std::string unit;   ///< "px", "ms", "%"; empty: none
   bool logarithmic = false;
-  bool from_zero = false;  ///< 0 is on it; not of logarithmic ones
+  bool from_zero = false;               ///< 0 is on it; not of logarithmic ones
+  std::vector<std::string> names = {};  ///< x: written at 1, 2, 3, … in the place of numbers; empty: numbers
 };
 
 struct Plot {

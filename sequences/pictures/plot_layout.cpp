@@ -258,13 +258,14 @@ std::array<std::vector<double>, 2> shown_values(const Plot& plot) {
 }  // namespace
 
 PlotLayout plot_layout(const Plot& plot, const PlotFiles& files) {
-  constexpr int kLeft_px = 96, kTop_px = 60, kBottom_px = 68;  // of numbers and words
+  constexpr int kLeft_px = 96, kTop_px = 60, kBottom_px = 68, kNames_px = 140;  // of numbers and words
   const auto [x, y] = shown_values(plot);
   PlotLayout layout;
   // At least a fifth of a small picture is left for the curves.
   const int left = std::min(kLeft_px, files.width_px / 3), top = std::min(kTop_px, files.height_px / 4);
-  layout.area_px = {left, top, files.width_px - legend_width_px(plot, files.width_px),
-                    files.height_px - std::min(kBottom_px, files.height_px / 4)};
+  layout.area_px = {
+      left, top, files.width_px - legend_width_px(plot, files.width_px),
+      files.height_px - std::min(plot.x.names.empty() ? kBottom_px : kNames_px, files.height_px / 4)};
   layout.x = axis_range(x, plot.x.logarithmic);
   layout.y = axis_range(y, plot.y.logarithmic);
   place_labels(plot, layout);

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "sequences/pictures/quality.h"
+#include "sequences/pipeline/frame_error.h"
 #include "sequences/pipeline/frame_report.h"
-#include "sequences/results/frame_error.h"
 
 namespace talisman::sequences {
 

@@ -58,7 +58,7 @@ std::vector<PaperFigure> canyon_drawings(PaperBench& bench) {
   PlotSeries bars{"renders per frame", {}, SeriesStyle::Bars};
   for (const SpriteRate& sprite : rates.sprites) {
     bars.points.push_back({static_cast<double>(bars.points.size() + 1), 100 * sprite.rate});
-    bars.labels.push_back(sprite.name);
+    plot.x.names.push_back(sprite.name);
   }
   plot.series.push_back(bars);
   return {{"LS97-21", "Fig. 21: " + name + ", renders of each sprite over the frames", plot}};

@@ -31,6 +31,18 @@ ResourceUse use_measured(PaperBench& bench, const std::string& resource, const F
                       thresholds);
 }
 
+/// What is warped is drawn beyond the display's edge, what is held is not: beside triple framing that is warped, too?
+std::string against_interpolated(PaperBench& bench, const FrameNumber& number) {
+  const BarnyardPlans plans = barnyard_plans(bench, 1);
+  const std::vector<double> interpolated = by_frame(*plans.interpolated, number);
+  const double whole = mean_of(interpolated);
+  std::string text = "of interpolated triple framing in the mean";
+  for (std::size_t k = 0; k < plans.thresholds.size(); ++k)
+    text += (k > 0 ? ", " : " ") + fixed(mean_of(by_frame(*plans.thresholds[k], number)) / whole, 2) +
+            formatted(" at %g px", barnyard_thresholds()[k]);
+  return text;
+}
+
 /// Slower, the same scene moves less from frame to frame: is that all that it takes?
 std::string use_at_other_speeds(PaperBench& bench, const std::string& resource, const FrameNumber& number,
                                 Finding (*rule)(const ResourceUse&)) {
@@ -41,7 +53,7 @@ std::string use_at_other_speeds(PaperBench& bench, const std::string& resource, 
             (finding.same ? "yes: " : "no: ") + finding.ours;
     if (finding.same) break;
   }
-  return text;
+  return text + "; " + against_interpolated(bench, number);
 }
 
 /// Which layer costs more when it is warped between its beats?
@@ -77,8 +89,8 @@ Plot use_plot(const ResourceUse& use, const std::string& sequence) {
             {"share of triple framing", "", false, true},
             {}};
   const std::size_t windows = use.thresholds.front().shares.size();
-  ResourceCurve held{"triple framing, interpolated or not", std::vector<double>(windows, 1)};
-  std::vector<const ResourceCurve*> curves{&held};
+  ResourceCurve held{"triple framing", std::vector<double>(windows, 1)};
+  std::vector<const ResourceCurve*> curves{&held, &use.interpolation};
   for (const ResourceCurve& curve : use.thresholds) curves.push_back(&curve);
   for (const ResourceCurve* curve : curves) {
     PlotSeries series{curve->name, {}, SeriesStyle::Line};
@@ -111,8 +123,11 @@ ResourceUse resource_use(const std::string& resource, const std::vector<double>&
   const auto sum = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0);
   };
-  ResourceUse use{resource, {}, sum(interpolated) / sum(held)};
   const std::vector<double> whole = moving_average(held);
+  ResourceUse use{resource,
+                  {},
+                  {"interpolated", shares_of(moving_average(interpolated), whole)},
+                  sum(interpolated) / sum(held)};
   for (std::size_t k = 0; k < px.size(); ++k)
     use.thresholds.push_back({formatted("%g px", px[k]), shares_of(moving_average(threshold[k]), whole)});
   return use;

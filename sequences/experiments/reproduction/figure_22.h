@@ -23,6 +23,7 @@ struct ResourceCurve {
 struct ResourceUse {
   std::string resource;                   ///< "polygons", "pixels"
   std::vector<ResourceCurve> thresholds;  ///< ascending in px
+  ResourceCurve interpolation;            ///< triple framing whose sprites are warped between its beats
   double interpolated = 0;                ///< of the whole sequence, over that of held triple framing
 };
 

@@ -69,6 +69,7 @@ TEST(Figure22, NormalisesEachWindowByTripleFraming) {
   ASSERT_EQ(use.thresholds[0].shares.size(), 16u);  // 30 - 15 + 1
   for (const double share : use.thresholds[0].shares) EXPECT_DOUBLE_EQ(share, 24.0 / 30);
   for (const double share : use.thresholds[3].shares) EXPECT_DOUBLE_EQ(share, 0.1);
+  for (const double share : use.interpolation.shares) EXPECT_DOUBLE_EQ(share, 1);
 }
 
 TEST(Figure22, OneWindowAboveTripleFramingIsANo) {

@@ -19,11 +19,11 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kFrames = 24;
+constexpr int kMovingFrames = 24;
 
-OpenSequence moving(const std::string& name) {
+OpenSequence opened_moving(const std::string& name) {
   if (name != "moving") throw InputError("'" + name + "' has no content");
-  const Variant run = tests::run_of(tests::moving_sequence(kFrames));
+  const Variant run = tests::run_of(tests::moving_sequence(kMovingFrames));
   return {run.sequence, run.settings};
 }
 
@@ -48,15 +48,15 @@ std::vector<Paper> made_up_papers() {
   pictures.pictures = true;
   item.claims.push_back(pictures);
   item.draw = [](PaperBench&) {
-    Plot plot{"bars", {"sprite", "", false}, {"rate", "%", false, true}, {}};
-    plot.series.push_back({"rate", {{1, 20}, {2, 50}}, SeriesStyle::Bars, {"sky", "land"}});
+    Plot plot{"bars", {"sprite", "", false, false, {"sky", "land"}}, {"rate", "%", false, true}, {}};
+    plot.series.push_back({"rate", {{1, 20}, {2, 50}}, SeriesStyle::Bars});
     return std::vector<PaperFigure>{{"X99-7", "Fig. 7", plot}};
   };
   return {{"X99", "Nobody, Nothing, 1999", {item, {"8", "Table 8", {claim_of("yes", true)}, nullptr}}}};
 }
 
 Reproduction made_up(bool quick) {
-  PaperBench bench(moving);
+  PaperBench bench(opened_moving);
   return reproduce(made_up_papers(), bench, quick, ProgressKind::None);
 }
 
@@ -79,7 +79,7 @@ TEST(Reproduce, ASecondExperimentIsMadeWhereARowSaysNoAndOnlyThere) {
 
 TEST(Reproduce, HasFailedWhereARowSaysNoThatMustNot) {
   std::vector<Paper> papers = made_up_papers();
-  PaperBench bench(moving);
+  PaperBench bench(opened_moving);
   EXPECT_EQ(reproduce(papers, bench, true, ProgressKind::None).failed(), 0);
   for (Claim& claim : papers[0].items[0].claims) claim.must = true;
   EXPECT_EQ(reproduce(papers, bench, true, ProgressKind::None).failed(), 1);
@@ -143,21 +143,21 @@ TEST(AllPapers, HaveRowsOfTheirOwnNames) {
 // --- Plans
 
 TEST(PaperBench, PlansAreThoseOfARunAndMadeOnce) {
-  PaperBench bench(moving);
+  PaperBench bench(opened_moving);
   const PlannedRun& run = bench.plan(threshold_plan("moving", 1));
   EXPECT_EQ(&run, &bench.plan(threshold_plan("moving", 1)));
-  OpenSequence open = moving("moving");
+  OpenSequence open = opened_moving("moving");
   open.settings.regulator.policy = regulator::Policy::Threshold;
   open.settings.regulator.thresholds.geometric_px = 1;
-  open.settings.frames = kFrames;
-  const Summary alone = planned(open.sequence, open.settings, {0, kFrames - 1});
-  ASSERT_EQ(run.summary.frames.size(), std::size_t{kFrames});
+  open.settings.frames = kMovingFrames;
+  const Summary alone = planned(open.sequence, open.settings, {0, kMovingFrames - 1});
+  ASSERT_EQ(run.summary.frames.size(), std::size_t{kMovingFrames});
   EXPECT_EQ(run.summary.polygons_rendered(), alone.polygons_rendered());
-  EXPECT_EQ(run.sprite_depth.size(), std::size_t{kFrames});
+  EXPECT_EQ(run.sprite_depth.size(), std::size_t{kMovingFrames});
 }
 
 TEST(PaperBench, TripleFramingDrawsInEveryThirdFrame) {
-  PaperBench bench(moving);
+  PaperBench bench(opened_moving);
   for (const PlanOf& of : {triple_framing("moving"), interpolated_triple_framing("moving")}) {
     const PlannedRun& run = bench.plan(of);
     for (const FrameLine& line : run.summary.frames)
@@ -173,22 +173,22 @@ TEST(PaperBench, TripleFramingDrawsInEveryThirdFrame) {
 
 // At half the speed frame 2 k shows the instant of frame k.
 TEST(PaperBench, AnotherSpeedIsAnotherStepOfTime) {
-  const OpenSequence original = moving("moving");
+  const OpenSequence original = opened_moving("moving");
   PlanOf slow = own_plan("moving"), fast = own_plan("moving");
   slow.speed = 0.5;
   fast.speed = 2;
   EXPECT_DOUBLE_EQ(changed(original, slow).settings.fps, 2 * original.settings.fps);
-  EXPECT_EQ(changed(original, slow).settings.frames, kFrames);
+  EXPECT_EQ(changed(original, slow).settings.frames, kMovingFrames);
   EXPECT_DOUBLE_EQ(changed(original, fast).settings.fps, original.settings.fps / 2);
-  EXPECT_EQ(changed(original, fast).settings.frames, kFrames / 2);
+  EXPECT_EQ(changed(original, fast).settings.frames, kMovingFrames / 2);
 }
 
 TEST(PaperBench, AFixedCameraStaysWhereItIsInTheMiddle) {
-  const OpenSequence original = moving("moving");
+  const OpenSequence original = opened_moving("moving");
   PlanOf of = own_plan("moving");
   of.fixed_camera = true;
   const layers::Scene& scene = *changed(original, of).sequence.scene;
-  const double middle_s = kFrames / 2 / original.sequence.fps;
+  const double middle_s = kMovingFrames / 2 / original.sequence.fps;
   const layers::dmat4 wanted = original.sequence.scene->at(middle_s).camera.world_from_camera;
   for (const double t : {0.0, 0.3, 1.0})
     for (int column = 0; column < 4; ++column)
@@ -197,7 +197,7 @@ TEST(PaperBench, AFixedCameraStaysWhereItIsInTheMiddle) {
 }
 
 TEST(PaperBench, FullResolutionIsThatOfTheDisplay) {
-  OpenSequence original = moving("moving");
+  OpenSequence original = opened_moving("moving");
   original.sequence.layer_specs[0].preferences.resolution_scale = 0.5;
   original.sequence.layers = layers::factor(*original.sequence.scene, original.sequence.layer_specs);
   PlanOf of = reference_plan("moving");
@@ -207,7 +207,7 @@ TEST(PaperBench, FullResolutionIsThatOfTheDisplay) {
 }
 
 TEST(PaperBench, WhatIsNotThereIsRefusedEachTime) {
-  PaperBench bench(moving);
+  PaperBench bench(opened_moving);
   EXPECT_THROW(bench.plan(own_plan("absent")), InputError);
   EXPECT_THROW(bench.plan(own_plan("absent")), InputError);
 }

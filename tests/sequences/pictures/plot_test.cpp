@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sequences/pictures/plot_layout.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
@@ -225,6 +226,26 @@ TEST_F(PlotFilesTest, FailingGnuplotIsReported) {
   EXPECT_THAT(failing, HasSubstr("rate.svg: gnuplot failed: terminal type svg is unknown"));
   EXPECT_THAT(missing, HasSubstr("No such file"));
   EXPECT_EQ(files(), 2u);  // bin/ and rate.csv
+}
+
+// Bars stand on 0, whatever the least of them, and the outer ones are whole.
+TEST(PlotScript, BarsStandOnZeroUnderTheirNames) {
+  Plot plot{"rates", {"sprite", "", false, false, {"sky", "it's"}}, {"rate", "%", false}, {}};
+  plot.series.push_back({"rate", {{1, 40}, {2, 50}}, SeriesStyle::Bars});
+  const PlotLayout layout = plot_layout(plot, {});
+  EXPECT_EQ(layout.y.lo, 0);
+  EXPECT_LE(layout.x.lo, 0.5);
+  EXPECT_GE(layout.x.hi, 2.5);
+  const std::string script = plot_script(plot);
+  EXPECT_THAT(script, HasSubstr("with boxes"));
+  EXPECT_THAT(script, HasSubstr("('sky' 1, 'it''s' 2)"));
+}
+
+TEST(PlotLayout, AnAxisFromZeroHasZeroOnIt) {
+  Plot plot{"", {"frame", "", false}, {"error", "px", false, true}, {}};
+  plot.series.push_back({"a", {{10, 40}, {20, 50}}, SeriesStyle::Line});
+  EXPECT_EQ(plot_layout(plot, {}).y.lo, 0);
+  EXPECT_GT(plot_layout(plot, {}).x.lo, 0);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/results/frame_error.h"
+#include "sequences/pipeline/frame_error.h"
 
 #include <array>
 

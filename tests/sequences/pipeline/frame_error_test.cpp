@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The mean error of a frame, by hand.
-#include "sequences/results/frame_error.h"
+#include "sequences/pipeline/frame_error.h"
 
 #include <gtest/gtest.h>
 
