@@ -373,7 +373,7 @@ TEST_F(Messages, ScriptFetchesWhatItRuns) {
   EXPECT_EQ(said("warps --object vase"), "fetch warps\ntalisman warps --object vase\n");
   EXPECT_EQ(said("warps"), "fetch warps\ntalisman warps\n");
   EXPECT_EQ(said("carousel --policy hold"), "fetch carousel\ntalisman render carousel --policy hold\n");
-  EXPECT_EQ(said(""), "fetch canyon\ntalisman render canyon --policy threshold --geometric-px 4 --video\n");
+  EXPECT_EQ(said(""), "fetch canyon\ntalisman render canyon --video\n");
 }
 
 }  // namespace
