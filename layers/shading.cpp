@@ -248,12 +248,18 @@ class Factoring {
     base_.gain = shading.first_blend.values.empty() ? constant(blend.x) : shading.first_blend;
   }
 
+  /// It gives nothing here that could be missing. What moves is looked at at some times only: it may.
+  bool never_reaches(int light) const {
+    return rests(scene_, base_) && rests(scene_, scene_.lights[light]) && !reaches(scene_, base_, light);
+  }
+
   void add_shadows(const HeldTerms& called, const HeldTerms& terms) {
     if (base_.shadows_as == ShadowsAs::Multiply) {
       add_seen_light(LayerKind::Shadow, "shadows", -1, terms).fade = {};
       return;
     }
     for (const int light : casting_lights(scene_)) {
+      if (never_reaches(light)) continue;
       const std::string name = light_name(scene_, light);
       if (base_.shadows_as == ShadowsAs::Light)
         add_light(light, called, terms);

@@ -49,6 +49,12 @@ const Table<ModelRecipe>& model_keys() {
         .required()
         .key("file", &M::file, asset(), "", "a model: glTF, COLLADA, FBX, OBJ, 3DS, AC3D …")
         .required()
+        .key("parts", &M::parts, with_rule(texts(1), "each matches a part of the file"), "",
+             "globs over the paths of its nodes: the rest is left out, of the bounds too")
+        .otherwise("all")
+        .key("without", &M::without, with_rule(texts(1), "each matches a part of the file"), "",
+             "globs of what is left out of those")
+        .otherwise("none")
         .key("scale", &M::scale, number(kPositive), "", "factor")
         .key("length_m", &M::length_m, number(kPositive), "m",
              "length of the longest side of the bounds, instead of `scale`")

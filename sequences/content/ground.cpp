@@ -63,36 +63,48 @@ std::string first_word(const std::string& text) {
   return word;
 }
 
-/// Rows of samples that a segment's mesh covers.
-struct Rows {
-  int first, last;
+/// Samples that a tile's mesh covers.
+struct Tile {
+  int first_row, last_row, first_column, last_column;
 };
 
-Rows rows_of(const layers::Mesh& mesh, const layers::HeightField& field) {
-  const auto row = [&](const layers::vec2& uv) {
-    return static_cast<int>(std::lround(uv.y * (field.rows - 1)));
+Tile tile_of(const layers::Mesh& mesh, const layers::HeightField& field) {
+  const auto sample = [](float share, int samples) {
+    return static_cast<int>(std::lround(share * static_cast<float>(samples - 1)));
   };
-  return {row(mesh.uvs.front()), row(mesh.uvs.back())};
+  const layers::vec2 first = mesh.uvs.front(), last = mesh.uvs.back();
+  return {sample(first.y, field.rows), sample(last.y, field.rows), sample(first.x, field.columns),
+          sample(last.x, field.columns)};
 }
 
-/// Texture coordinates over the segment's own texture instead of over the whole field.
-void remap(layers::Mesh& mesh, const layers::HeightField& field, Rows rows) {
-  const float columns = static_cast<float>(field.columns - 1 + 2 * kTextureMargin);
-  const float length = static_cast<float>(rows.last - rows.first + 2 * kTextureMargin);
+/// Texture coordinates over the tile's own texture instead of over the whole field.
+void remap(layers::Mesh& mesh, const layers::HeightField& field, const GroundWindow& window) {
   for (layers::vec2& uv : mesh.uvs) {
-    uv.x = (uv.x * static_cast<float>(field.columns - 1) + kTextureMargin) / columns;
-    uv.y = (uv.y * static_cast<float>(field.rows - 1) - static_cast<float>(rows.first - kTextureMargin)) /
-           length;
+    uv.x = (uv.x * static_cast<float>(field.columns - 1) - static_cast<float>(window.first_column)) /
+           static_cast<float>(window.columns);
+    uv.y = (uv.y * static_cast<float>(field.rows - 1) - static_cast<float>(window.first_row)) /
+           static_cast<float>(window.rows);
   }
 }
 
-GroundWindow window_of(const layers::HeightField& field, Rows rows) {
+GroundWindow window_of(const Tile& tile) {
   GroundWindow window;
-  window.first_column = -kTextureMargin;
-  window.first_row = rows.first - kTextureMargin;
-  window.columns = field.columns - 1 + 2 * kTextureMargin;
-  window.rows = rows.last - rows.first + 2 * kTextureMargin;
+  window.first_column = tile.first_column - kTextureMargin;
+  window.first_row = tile.first_row - kTextureMargin;
+  window.columns = tile.last_column - tile.first_column + 2 * kTextureMargin;
+  window.rows = tile.last_row - tile.first_row + 2 * kTextureMargin;
   return window;
+}
+
+/// How the sequence cuts it; never into more tiles than there are cells.
+layers::TerrainOptions cut_of(const TerrainContent& content, const layers::HeightField& field) {
+  const auto cells = [&](int samples) { return (samples - 2) / content.every + 1; };
+  layers::TerrainOptions options;
+  options.every = content.every;
+  options.cells_per_segment = (cells(field.rows) - 1) / content.segments + 1;
+  options.seam_cells = content.seam_cells;
+  options.across = std::min(content.across, cells(field.columns));
+  return options;
 }
 
 }  // namespace
@@ -157,16 +169,12 @@ void add_terrain(layers::Scene& scene, const TerrainContent& content) {
   const layers::HeightField field = read_height_field(content);
   const int node = static_cast<int>(scene.nodes.size());
   scene.nodes.push_back({content.name, -1, {}});
-  layers::TerrainOptions options;
-  options.cells_per_segment = (field.rows - 2) / content.segments + 1;
-  options.seam_cells = content.seam_cells;
-  std::vector<layers::Mesh> meshes = layers::terrain_segments(field, options);
+  std::vector<layers::Mesh> meshes = layers::terrain_segments(field, cut_of(content, field));
   std::vector<GroundWindow> windows;
   for (layers::Mesh& mesh : meshes) {
-    const Rows rows = rows_of(mesh, field);
     mesh.name = content.name + "/" + std::to_string(windows.size());
-    remap(mesh, field, rows);
-    windows.push_back(window_of(field, rows));
+    windows.push_back(window_of(tile_of(mesh, field)));
+    remap(mesh, field, windows.back());
   }
   std::vector<layers::Texture> textures = painted_ground(content, field, windows);
   for (std::size_t k = 0; k < meshes.size(); ++k) {

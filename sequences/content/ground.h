@@ -10,7 +10,7 @@
 ///            image's pixels, so classes blend over one cell; a slow copy of the same tile varies the
 ///            brightness, which hides its repetition
 ///
-/// Each terrain segment gets its own baked texture. It reaches two cells over the segment's border, so that
+/// Each terrain tile gets its own baked texture. It reaches two cells over the tile's border, so that
 /// filtering at the border never sees the other side of a texture that repeats. Baking takes about 0.2 µs per
 /// texel.
 
@@ -38,7 +38,9 @@ struct TerrainContent {
   int first_row = 0;        ///< ≥ 0; rows of the pictures before it are left out, and it lies at z = 0
   double smooth_cells = 1;  ///< 0 … 16; standard deviation; more rounds the rocks off
   int segments = 6;    ///< 1 … rows / 2; more of them follow parallax more closely, and are more sprites
-  int seam_cells = 1;  ///< 0 … 64; rows by which a segment reaches over each inner border
+  int across = 1;      ///< 1 … 1000; tiles side by side in each segment
+  int seam_cells = 1;  ///< 0 … 64; cells by which a tile reaches over each inner border
+  int every = 1;       ///< 1 … 64; samples between vertices; polygons fall with its square
   std::string classes_file;  ///< as many pixels as heights; empty: one colour
   std::string list_file;     ///< that the classes were read from; empty: none
   std::vector<GroundClass> classes;

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "layers/layer.h"
 #include "sequences/content/default_view.h"
 #include "sequences/content/images/place_images.h"
 #include "sequences/content/nearest_word.h"
@@ -150,8 +151,34 @@ layers::Transform fitting(const ModelRecipe& recipe, const layers::Scene& model)
   return fit;
 }
 
+bool is_among(const layers::Part& part, const std::vector<std::string>& globs) {
+  return std::ranges::any_of(globs, [&](const auto& glob) { return layers::glob_matches(glob, part.name); });
+}
+
+/// Throws InputError for a glob that matches no part.
+void check_globs(const layers::Scene& model, const std::string& key, const std::vector<std::string>& globs,
+                 const std::string& file) {
+  for (const std::string& glob : globs) {
+    if (std::ranges::any_of(model.parts, [&](const auto& part) { return is_among(part, {glob}); })) continue;
+    std::vector<std::string> names;
+    for (const layers::Part& part : model.parts) names.push_back(part.name);
+    throw InputError(
+        key + " has '" + glob + "', rule: each matches a part of the file" + did_you_mean(glob, names), file);
+  }
+}
+
+/// Only the parts that are asked for; cameras and lights stay.
+void keep_parts(layers::Scene& model, const ModelRecipe& recipe) {
+  check_globs(model, "parts", recipe.parts, recipe.file);
+  check_globs(model, "without", recipe.without, recipe.file);
+  std::erase_if(model.parts, [&](const layers::Part& part) {
+    return (!recipe.parts.empty() && !is_among(part, recipe.parts)) || is_among(part, recipe.without);
+  });
+}
+
 void add_model(BuiltScene& built, const ModelRecipe& recipe, const std::vector<std::string>& assets) {
-  const ImportedModel model = import_model(recipe.file, {}, assets);
+  ImportedModel model = import_model(recipe.file, {}, assets);
+  keep_parts(model.scene, recipe);
   for (const std::string& warning : model.warnings) built.warnings.push_back(recipe.file + ": " + warning);
   append(built.files, files_read(model));
   const SharedContent content = add_content(built.scene, model.scene, recipe.two_sided);

@@ -58,7 +58,7 @@ const Table<SceneRecipe>& scene_keys() {
       Table<S>()
           .key("background", &S::background, color(), "", "colour behind all layers")
           .key("shapes", &S::shapes, list_of(shape_keys()), "", "simple bodies that need no file")
-          .key("models", &S::models, list_of(model_keys()), "", "bodies from files")
+          .key("models", &S::models, list_of(model_keys(), 0), "", "bodies from files")
           .key("images", &S::images, list_of(image_keys()), "",
                "2-D layers: pictures, sequences of pictures, videos")
           .key("assets", &S::assets, folders(), "",

@@ -24,6 +24,7 @@ struct ModelInstance {
 
 struct ModelRecipe {
   std::string file;
+  std::vector<std::string> parts, without;  ///< globs: what is taken (empty: all), and what of it is not
   double scale = 1;
   std::optional<double> length_m;   ///< instead of scale: the longest side of the bounds
   layers::dvec3 turn_deg{0, 0, 0};  ///< about x, then y, then z

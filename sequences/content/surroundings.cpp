@@ -93,7 +93,8 @@ Table<SkyContent> patch_keys(const layers::dvec2& azimuth_deg, const Range& azim
 const Table<TerrainContent>& terrain_keys() {
   static const Table<TerrainContent> table = [] {
     Table<TerrainContent> t("terrain");
-    t.key("name", &TerrainContent::name, text(), "", "parts are `name/0`, `name/1`, … from near to far")
+    t.key("name", &TerrainContent::name, text(), "",
+          "parts are `name/0`, `name/1`, … from near to far, in each segment from left to right")
         .key("heights", &TerrainContent::heights_file, asset(), "",
              "grey image; a row is a row of samples, row 0 at z = 0, later rows towards -z, centred in x")
         .required()
@@ -106,8 +107,12 @@ const Table<TerrainContent>& terrain_keys() {
              "standard deviation of a Gaussian against the steps of 8-bit heights")
         .key("segments", &TerrainContent::segments, whole(1, 1000), "",
              "parts: more follow parallax more closely, and are more sprites")
+        .key("across", &TerrainContent::across, whole(1, 1000), "",
+             "tiles side by side in each segment: `segments` times so many parts")
         .key("seam_cells", &TerrainContent::seam_cells, whole(0, 64), "cells",
-             "rows by which a segment reaches over its border");
+             "by which a tile reaches over its far and its right border")
+        .key("every", &TerrainContent::every, whole(1, 64), "samples",
+             "between vertices: 2 is a quarter of the triangles; cells of tiles and seams grow with it");
     add_map(t, "classes", classes_keys(), "what lies on the ground");
     return t.otherwise("one colour");
   }();

@@ -30,6 +30,25 @@ std::vector<std::string> names(const LayerSet& set) {
 
 // --- Which layers ---
 
+/// The names of the room's layers where the sun, which casts too, travels that way.
+std::vector<std::string> names_under_a_sun(const dvec3& direction) {
+  Room room = Room().casting().factored();
+  Light sun;
+  sun.kind = Light::Kind::Directional;
+  sun.name = "sun";
+  sun.direction = direction;
+  sun.casts_shadow = true;
+  room.scene.lights.push_back(sun);
+  return names(room.layers());
+}
+
+// The floor faces up: a sun that shines from below throws no shadow on it, whatever stands there.
+TEST(ShadeLayers, LightThatNeverReachesTheReceiverMakesNone) {
+  EXPECT_THAT(names_under_a_sun({0, -1, 0}),
+              ElementsAre("floor", testing::HasSubstr("of lamp"), testing::HasSubstr("of sun"), "ball"));
+  EXPECT_THAT(names_under_a_sun({0, 1, 0}), ElementsAre("floor", testing::HasSubstr("of lamp"), "ball"));
+}
+
 TEST(ShadeLayers, SceneThatCallsForNothingHasNone) {
   const LayerSet set = Room().factored().layers();
   EXPECT_THAT(names(set), ElementsAre("floor", "ball"));

@@ -72,6 +72,55 @@ TEST(TerrainSegments, SeamWiderThanTheRestStopsAtTheRim) {
   EXPECT_EQ(segments[0].positions.back(), segments.back().positions.back());
 }
 
+// 5 x 5 samples in 2 x 2 tiles without seams: each has 2 x 2 cells, 3 x 3 vertices.
+TEST(TerrainSegments, TilesSideBySideShareTheirBorder) {
+  const auto field = waves(5, 5);
+  const auto tiles = terrain_segments(field, {.cells_per_segment = 2, .seam_cells = 0, .across = 2});
+  ASSERT_EQ(tiles.size(), 4u);
+  for (const Mesh& tile : tiles) {
+    EXPECT_EQ(tile.positions.size(), 9u);
+    EXPECT_EQ(tile.triangle_count(), 8);
+  }
+  for (const std::size_t row : {0, 1, 2}) {
+    EXPECT_EQ(tiles[0].positions[3 * row + 2], tiles[1].positions[3 * row]);
+    EXPECT_EQ(tiles[0].normals[3 * row + 2], tiles[1].normals[3 * row]);
+    EXPECT_EQ(tiles[0].positions[6 + row], tiles[2].positions[row]);
+  }
+  EXPECT_EQ(tiles[3].uvs.front(), (vec2{0.5f, 0.5f}));
+  EXPECT_EQ(tiles[3].uvs.back(), (vec2{1, 1}));
+}
+
+// With a seam of a cell the left tiles reach to column 3, those at the right rim no farther than it.
+TEST(TerrainSegments, TilesReachOverTheirRightBorder) {
+  const auto tiles = terrain_segments(waves(5, 5), {.cells_per_segment = 4, .seam_cells = 1, .across = 2});
+  ASSERT_EQ(tiles.size(), 2u);
+  EXPECT_EQ(tiles[0].positions.size(), 4u * 5);
+  EXPECT_EQ(tiles[1].positions.size(), 3u * 5);
+  EXPECT_FLOAT_EQ(tiles[0].uvs.back().x, 0.75f);
+  EXPECT_EQ(tiles[1].uvs.back().x, 1);
+}
+
+// Seven samples, a vertex at 0, 3 and 6; eight: the rim's as well, though it is nearer.
+TEST(TerrainSegments, CoarseMeshesKeepTheirRim) {
+  for (const int rows : {7, 8}) {
+    const auto field = waves(4, rows);
+    const auto tiles = terrain_segments(field, {.seam_cells = 0, .every = 3});
+    ASSERT_EQ(tiles.size(), 1u);
+    ASSERT_EQ(tiles[0].positions.size(), 2u * (rows == 7 ? 3 : 4));
+    EXPECT_EQ(tiles[0].positions[2], terrain_segments(field, {})[0].positions[3 * 4]);
+    EXPECT_EQ(tiles[0].positions.back(), terrain_segments(field, {})[0].positions.back());
+  }
+}
+
+// Borders of a coarse mesh lie on its own vertices: neighbours share them.
+TEST(TerrainSegments, CoarseTilesShareTheirBorder) {
+  const auto tiles =
+      terrain_segments(waves(12, 12), {.cells_per_segment = 2, .seam_cells = 0, .across = 2, .every = 3});
+  ASSERT_EQ(tiles.size(), 4u);
+  for (const std::size_t row : {0, 1, 2})
+    EXPECT_EQ(tiles[0].positions[3 * row + 2], tiles[1].positions[3 * row]);
+}
+
 TEST(TerrainSegments, TrianglesFaceUp) {
   const auto field = waves(12, 12);
   for (const Mesh& mesh : terrain_segments(field, {5, 1}))

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/content/asset_paths.h"
+#include "sequences/content/default_view.h"
 #include "sequences/content/sequence_file.h"
 #include "tests/sequences/sequence_lines.h"
 
@@ -199,7 +200,7 @@ TEST(LoadSequence, WhatIsNoMapOrNotThereIsRefused) {
   for (const std::string text : {"", "- 1\n- 2\n", "hello", "\t: [", "a: &a [*a]\n", "? [1]\n: 2\n"})
     EXPECT_NE(message_of([&] { load_sequence(folder.write("odd.yaml", text)); }), "") << text;
   EXPECT_THAT(message_of([] { load_sequence("no-such-thing"); }),
-              HasSubstr("sequences are: canyon, canyon/background"));
+              HasSubstr("canyon, canyon/1997, canyon/background"));
   EXPECT_THAT(message_of([&] { load_sequence(folder.write("bare.yaml", "frames: 1\n")); }),
               HasSubstr("shows nothing"));
 }
@@ -222,6 +223,41 @@ TEST(LoadSequence, VariantSaysOnlyWhatIsDifferent) {
   EXPECT_EQ(s.layers.layers[0].parts.size(), 3u);
   EXPECT_THAT(message_of([&] { load_sequence(folder.write("loop.yaml", "extends: loop.yaml\n")); }),
               HasSubstr("circle"));
+}
+
+// Only the named part is there, and the bounds are its own.
+TEST(LoadSequence, PartsOfAModelAreTakenByGlobs) {
+  const TemporaryFolder folder;
+  folder.write("two.obj",
+               "o near\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\no far\nv 8 0 0\nv 12 0 0\nv 8 2 0\nf 4 5 6\n");
+  const auto text = [](const std::string& keys) {
+    return "frames: 1\nmodels: [{id: m, file: two.obj, centered: true, " + keys + "}]\n";
+  };
+  const Sequence s = load_sequence(folder.write("far.yaml", text("parts: ['*fa?']")));
+  ASSERT_EQ(s.scene->parts.size(), 1u);
+  const layers::WorldBounds bounds = bounds_of_scene(*s.scene);
+  EXPECT_NEAR(bounds.lo.x, -2, 1e-6);
+  EXPECT_NEAR(bounds.hi.x, 2, 1e-6);
+  EXPECT_NEAR(bounds.hi.y, 1, 1e-6);
+  EXPECT_EQ(load_sequence(folder.write("both.yaml", text("parts: ['*near', '*far']"))).scene->parts.size(),
+            2u);
+  const Sequence rest = load_sequence(folder.write("rest.yaml", text("without: ['*near']")));
+  ASSERT_EQ(rest.scene->parts.size(), 1u);
+  EXPECT_EQ(rest.scene->parts[0].name, s.scene->parts[0].name);
+  for (const std::string key : {"parts", "without"})
+    EXPECT_THAT(message_of([&] { load_sequence(folder.write("none.yaml", text(key + ": ['*fur']"))); }),
+                HasSubstr(key + " has '*fur', rule: each matches a part of the file"));
+}
+
+// A variant that replaces its base's models by shapes.
+TEST(LoadSequence, VariantMayHaveNoModels) {
+  const TemporaryFolder folder;
+  folder.write("box.obj", kBox);
+  folder.write("base.yaml", "frames: 1\nmodels: [{id: m, file: box.obj}]\n");
+  const Sequence s = load_sequence(
+      folder.write("variant.yaml", "extends: base.yaml\nmodels: []\nshapes: [{id: ball, sphere: 1}]\n"));
+  ASSERT_EQ(s.scene->parts.size(), 1u);
+  EXPECT_EQ(s.scene->parts[0].name, "ball");
 }
 
 TEST(LoadSequence, WithoutLayersAndCameraTheyAreMadeUp) {
@@ -266,6 +302,19 @@ TEST(FetchAssets, UnpacksWhatTheSequenceListsOnce) {
   EXPECT_EQ(fetch(folder, file), 0);
   std::ifstream calls(folder.path() + "/calls");
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(calls), {}), "some-data\nmore.data\n");
+}
+
+// A .sh3f is a zip file: it becomes a folder of its name.
+TEST(FetchAssets, ArchivesOfAPackageBecomeFolders) {
+  const TemporaryFolder folder;
+  folder.write("zip/chair/chair.obj", kBox);
+  const std::string zip = "cd '" + folder.path() + "/zip' && cmake -E tar cf ../some.sh3f --format=zip chair";
+  ASSERT_EQ(std::system(zip.c_str()), 0);
+  write_tool(folder, "apt-get", "cp '" + folder.path() + "/some.sh3f' \"$2_1_all.deb\"\n");
+  write_tool(folder, "dpkg", "mkdir -p \"$3/usr\" && cp \"$2\" \"$3/usr/some.sh3f\"\n");
+  EXPECT_EQ(fetch(folder, folder.write("film.yaml", "packages: [some-data]\n")), 0) << log_of(folder);
+  EXPECT_TRUE(std::filesystem::exists(folder.path() + "/assets/some-data/usr/some/chair/chair.obj"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() + "/assets/some-data/usr/some.sh3f"));
 }
 
 TEST(FetchAssets, FailureNamesTheCommandAndLeavesNothing) {
