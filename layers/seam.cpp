@@ -20,7 +20,8 @@ using WeldedPlace = std::array<std::int64_t, 3>;
 using EdgeKey = std::pair<WeldedPlace, WeldedPlace>;
 using TriangleKey = std::array<WeldedPlace, 3>;
 
-constexpr int kMostHalvings = 14;
+constexpr int kMostHalvings = 8;
+constexpr int kCutSteps = 12;
 
 /// Positions that are one place have one key.
 class WeldedPlaces {
@@ -162,20 +163,6 @@ class Reach {
                          [&](const ScreenEdge& edge) { return distance_px(px, edge) <= reach_px_; });
     });
   }
-  /// No side of it is longer than kHalvedTo reaches where it can be seen.
-  bool is_small(const std::array<dvec3, 3>& triangle) const {
-    return std::all_of(views_.begin(), views_.end(), [&](const CutView& view) {
-      std::array<dvec2, 3> px;
-      for (int k = 0; k < 3; ++k) {
-        const dvec4 clip = view.clip_from_rest * dvec4(triangle[k], 1);
-        if (!(clip.w > view.near_m)) return true;
-        px[k] = screen_from_clip(clip, view.display_px);
-      }
-      for (int k = 0; k < 3; ++k)
-        if (glm::length(px[k] - px[(k + 1) % 3]) > kHalvedTo * reach_px_) return false;
-      return true;
-    });
-  }
   bool is_ever_in_view() const { return !views_.empty(); }
 
  private:
@@ -197,7 +184,7 @@ class PieceBuilder {
       return;
     std::array<std::uint32_t, 3> own;
     for (int k = 0; k < 3; ++k) own[k] = copied(triangle[k]);
-    add_halved(own, kMostHalvings);
+    add_cut(own, kMostHalvings);
   }
   bool empty() const { return mesh_.indices.empty(); }
   Mesh take() { return std::move(mesh_); }
@@ -215,21 +202,44 @@ class PieceBuilder {
     held_.push_back(static_cast<char>(is_held));
   }
 
-  void add_halved(const std::array<std::uint32_t, 3>& t, int halvings) {
-    const std::array<dvec3, 3> at = {places_[t[0]], places_[t[1]], places_[t[2]]};
+  void add_triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    mesh_.indices.insert(mesh_.indices.end(), {a, b, c});
+  }
+
+  /// Adds what of the triangle is in reach: all, or up to a line between two of its sides.
+  void add_cut(std::array<std::uint32_t, 3> t, int halvings) {
     const int held = held_[t[0]] + held_[t[1]] + held_[t[2]];
     if (held == 0) return;
-    if (held == 3 || halvings == 0 || reach_.is_small(at)) {
-      mesh_.indices.insert(mesh_.indices.end(), t.begin(), t.end());
-      return;
-    }
+    if (held == 3) return add_triangle(t[0], t[1], t[2]);
+    // Turned so that the first corner is the one that differs from the other two.
+    while ((held == 1) != (held_[t[0]] != 0)) std::rotate(t.begin(), t.begin() + 1, t.end());
+    const auto [a, b, c] = t;
+    const std::uint32_t on_b = held == 1 ? cut(a, b) : cut(b, a), on_c = held == 1 ? cut(a, c) : cut(c, a);
+    if (halvings > 0 && reach_.holds(0.5 * (places_[on_b] + places_[on_c]))) return halve(t, halvings - 1);
+    if (held == 1) return add_triangle(a, on_b, on_c);
+    add_triangle(b, c, on_c);
+    add_triangle(b, on_c, on_b);
+  }
+
+  void halve(const std::array<std::uint32_t, 3>& t, int halvings) {
     int longest = 0;
+    const auto length = [&](int k) { return glm::distance(places_[t[k]], places_[t[(k + 1) % 3]]); };
     for (int k = 1; k < 3; ++k)
-      if (glm::distance(at[k], at[(k + 1) % 3]) > glm::distance(at[longest], at[(longest + 1) % 3]))
-        longest = k;
-    const std::uint32_t a = t[longest], b = t[(longest + 1) % 3], c = t[(longest + 2) % 3], m = between(a, b);
-    add_halved({a, m, c}, halvings - 1);
-    add_halved({m, b, c}, halvings - 1);
+      if (length(k) > length(longest)) longest = k;
+    const std::uint32_t a = t[longest], b = t[(longest + 1) % 3], c = t[(longest + 2) % 3];
+    const std::uint32_t m = between(std::min(a, b), std::max(a, b), 0.5, middle_of_);
+    add_cut({a, m, c}, halvings);
+    add_cut({m, b, c}, halvings);
+  }
+
+  /// Where on the way from a corner in reach to one that is not the reach ends; just beyond.
+  std::uint32_t cut(std::uint32_t inside, std::uint32_t outside) {
+    double in = 0, out = 1;
+    for (int k = 0; k < kCutSteps; ++k) {
+      const double middle = 0.5 * (in + out);
+      (reach_.holds(glm::mix(places_[inside], places_[outside], middle)) ? in : out) = middle;
+    }
+    return between(inside, outside, out, cut_of_);
   }
 
   template <typename Array>
@@ -250,32 +260,30 @@ class PieceBuilder {
     return it->second;
   }
 
-  template <typename V>
-  static void push_middle(std::vector<V>& values, std::uint32_t a, std::uint32_t b) {
-    if (!values.empty()) values.push_back(0.5f * (values[a] + values[b]));
-  }
+  using BetweenTwo = std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t>;
+
   template <typename V>
   static V unit_or(const V& v, const V& otherwise) {
     const float length = glm::length(v);
     return length > 0 ? v / length : otherwise;
   }
-  std::uint32_t between(std::uint32_t a, std::uint32_t b) {
-    const auto [it, is_new] =
-        middle_of_.emplace(std::minmax(a, b), static_cast<std::uint32_t>(places_.size()));
+  /// The vertex at the share `t` of the way from a to b; made once for each of `known`.
+  std::uint32_t between(std::uint32_t a, std::uint32_t b, double t, BetweenTwo& known) {
+    const auto [it, is_new] = known.emplace(std::pair(a, b), static_cast<std::uint32_t>(places_.size()));
     if (!is_new) return it->second;
-    const dvec3 middle = 0.5 * (places_[a] + places_[b]);
-    note_place(middle, reach_.holds(middle));
-    push_middle(mesh_.positions, a, b);
-    if (!mesh_.normals.empty())
-      mesh_.normals.push_back(unit_or(mesh_.normals[a] + mesh_.normals[b], mesh_.normals[a]));
-    push_middle(mesh_.uvs, a, b);
-    push_middle(mesh_.emissive_uvs, a, b);
-    push_middle(mesh_.normal_uvs, a, b);
+    const auto push = [a, b, share = static_cast<float>(t)](auto& values) {
+      if (!values.empty()) values.push_back((1 - share) * values[a] + share * values[b]);
+    };
+    const dvec3 place = glm::mix(places_[a], places_[b], t);
+    note_place(place, reach_.holds(place));
+    for (auto* values : {&mesh_.positions, &mesh_.normals, &mesh_.colors}) push(*values);
+    for (auto* values : {&mesh_.uvs, &mesh_.emissive_uvs, &mesh_.normal_uvs}) push(*values);
+    push(mesh_.tangents);
+    if (!mesh_.normals.empty()) mesh_.normals.back() = unit_or(mesh_.normals.back(), mesh_.normals[a]);
     if (!mesh_.tangents.empty()) {
-      const vec3 sum = vec3(mesh_.tangents[a]) + vec3(mesh_.tangents[b]);
-      mesh_.tangents.push_back(vec4(unit_or(sum, vec3(mesh_.tangents[a])), mesh_.tangents[a].w));
+      const vec3 along = unit_or(vec3(mesh_.tangents.back()), vec3(mesh_.tangents[a]));
+      mesh_.tangents.back() = vec4(along, mesh_.tangents[a].w);
     }
-    push_middle(mesh_.colors, a, b);
     return it->second;
   }
 
@@ -287,7 +295,7 @@ class PieceBuilder {
   std::vector<dvec3> places_;  ///< world, of each vertex
   std::vector<char> held_;     ///< likewise: is it in reach?
   std::map<std::uint32_t, std::uint32_t> copy_of_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> middle_of_;
+  BetweenTwo middle_of_, cut_of_;
 };
 
 TriangleKey triangle_key(const RigidPart& part, const std::array<std::uint32_t, 3>& corner) {

@@ -13,8 +13,8 @@
 ///   reach = g + kFilter_px / resolution        of A into B, and of B into A by its own
 ///
 /// It is the neighbour's own surface, its triangles, material and texture, so that nothing is seen that is not there: no
-/// outline changes, and a hill stays one. Triangles that reach farther are halved along their longest edge until what
-/// reaches is kHalvedTo reaches long. What is seen at a grazing angle reaches far in metres: a pixel there is long.
+/// outline changes, and a hill stays one. Triangles that reach farther are cut off there, by a straight line; where the
+/// reach bulges beyond it they are halved first. What is seen at a grazing angle reaches far in metres: a pixel there is long.
 ///
 /// An edge is shared where it is at the rim of A (one triangle of A has it) and is an edge of B, and both are rigid,
 /// opaque and move together: ends coincide to kSameplace of the scene's size.
@@ -28,7 +28,6 @@ namespace talisman::layers {
 
 /// For the filter of the compositor and a texel that is stretched: pixels at one texel per pixel.
 inline constexpr double kFilter_px = 2;
-inline constexpr double kHalvedTo = 4;
 inline constexpr double kSameplace = 1e-6;
 
 /// Does the layer draw seams? They are the last body of its bound, and the order of layers leaves them out: they hide
