@@ -95,7 +95,7 @@ void apply(const ContentOptions& options, const std::string& path, SceneRecipe& 
 /// The layers of a file that leaves them to us. What of the order was not always seen so is a warning.
 Factoring found_layers(Sequence& sequence, const BuiltScene& built, const AutoLayers& options) {
   Factoring found =
-      study({built.scene, tagged_specs(built.scene, built.layer_tags), own_settings(sequence)}, options)
+      study({built.scene, tagged_specs(built.scene, built.layer_tags), {}, own_settings(sequence)}, options)
           .chosen;
   for (const SeenPair& seen : found.order)
     if (seen.hidden > 0) sequence.warnings.push_back(sequence.file + ": " + hidden_in_words(found, seen));
