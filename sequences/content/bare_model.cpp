@@ -105,13 +105,15 @@ layers::Scene without_texels(layers::Scene& scene) {
 void factor_by_motion(BareModel& bare) {
   layers::Scene shown = without_texels(bare.model.scene);
   std::vector<layers::LayerSpec> kept = tagged_specs(shown, bare.model.layer_tags);
+  std::vector<layers::LayerSpec> nodes = layers::default_layer_specs(shown);
   const std::size_t tagged = kept.size();
   add_model_view(shown, kept, bare.view);
   const std::size_t all_kept = kept.size();
   Sequence as_shown;
   as_shown.fps = bare.fps;
   as_shown.frames = bare.frames;
-  Factoring found = study({shown, std::move(kept), own_settings(as_shown)}, AutoLayers{}).chosen;
+  Factoring found =
+      study({shown, std::move(kept), std::move(nodes), own_settings(as_shown)}, AutoLayers{}).chosen;
   bare.specs.assign(found.specs.begin(), found.specs.begin() + static_cast<std::ptrdiff_t>(tagged));
   bare.specs.insert(bare.specs.end(), found.specs.begin() + static_cast<std::ptrdiff_t>(all_kept),
                     found.specs.end());

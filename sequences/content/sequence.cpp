@@ -101,7 +101,7 @@ Factoring found_layers(Sequence& sequence, const BuiltScene& built, const std::v
                        const AutoLayers& options) {
   std::vector<layers::LayerSpec> kept = tagged_specs(built.scene, built.layer_tags);
   add_image_layers(images, kept);
-  Factoring found = study({built.scene, std::move(kept), own_settings(sequence)}, options).chosen;
+  Factoring found = study({built.scene, std::move(kept), {}, own_settings(sequence)}, options).chosen;
   for (const SeenPair& seen : found.order)
     if (seen.hidden > 0) sequence.warnings.push_back(sequence.file + ": " + hidden_in_words(found, seen));
   return found;

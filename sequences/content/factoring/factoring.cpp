@@ -21,7 +21,7 @@ constexpr int kMostPlanned = 60'000;
 constexpr int kOrderRounds = 3;
 
 /// Share of the frames in which layers share a sprite anyway that makes them one.
-constexpr double kSharedShare = 0.5;
+constexpr double kSharedShare = 0.9;
 
 /// What is joined may meet others; what is split may be split again.
 constexpr int kJoinRounds = 2, kSplitRounds = 2;
@@ -63,9 +63,10 @@ class Study {
   Study(const Unfactored& scene, const AutoLayers& options)
       : scene_(scene), options_(options), instants_(instants_of(scene)) {
     pieces_ = pieces_of(scene.scene, scene.kept);
-    nodes_ = groups_by_node(scene.scene, pieces_, node_pieces_of(scene.scene, scene.kept));
+    node_pieces_ = node_pieces_of(scene.scene, scene.kept, scene.nodes);
+    nodes_ = groups_by_node(scene.scene, pieces_, node_pieces_);
     if (pieces_.free > kMostFactoredPieces) {
-      pieces_ = node_pieces_of(scene.scene, scene.kept);
+      pieces_ = node_pieces_;
       nodes_.clear();
       for (std::size_t i = 0; i < pieces_.free; ++i) nodes_.push_back({static_cast<int>(i)});
     }
@@ -140,7 +141,8 @@ class Study {
     Factoring f;
     f.how = how;
     f.specs = scene_.kept;
-    const std::vector<LayerSpec> own = specs_of_groups(scene_.scene, scene_.kept, pieces_, groups);
+    const std::vector<LayerSpec> own =
+        specs_of_groups(scene_.scene, scene_.kept, pieces_, groups, node_pieces_);
     f.specs.insert(f.specs.end(), own.begin(), own.end());
     for (std::size_t i = pieces_.free; i < pieces_.layers.size(); ++i)
       f.pieces.push_back({static_cast<int>(i)});
@@ -308,7 +310,7 @@ class Study {
   const Unfactored& scene_;
   AutoLayers options_;
   std::vector<int> instants_;
-  Pieces pieces_;
+  Pieces pieces_, node_pieces_;
   Groups nodes_;
   std::optional<Data> data_;
   int frames_ = 1;  ///< that comparisons plan

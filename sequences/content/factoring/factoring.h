@@ -37,8 +37,9 @@ inline constexpr std::size_t kMostFactoredPieces = 1024;
 /// What is to be factored.
 struct Unfactored {
   const layers::Scene& scene;
-  std::vector<layers::LayerSpec> kept;  ///< layers that are there already: they take their parts first
-  Settings settings;                    ///< under which it is planned
+  std::vector<layers::LayerSpec> kept;   ///< layers that are there already: they take their parts first
+  std::vector<layers::LayerSpec> nodes;  ///< what "node" is; empty: layers::default_layer_specs
+  Settings settings;                     ///< under which it is planned
 };
 
 struct Factoring {

@@ -28,14 +28,19 @@ std::string glob_of(std::string name) {
 
 /// `kept` takes its parts first; the pieces are those of `own` that are left any.
 Pieces pieces_between(const layers::Scene& scene, std::span<const LayerSpec> kept,
-                      std::vector<LayerSpec> own) {
+                      const std::vector<LayerSpec>& own) {
   std::vector<LayerSpec> specs(kept.begin(), kept.end());
   for (LayerSpec& spec : specs) spec.shading = {};
-  for (LayerSpec& spec : own) spec.name = "piece " + std::to_string(specs.size()), specs.push_back(spec);
+  specs.insert(specs.end(), own.begin(), own.end());
+  for (std::size_t i = kept.size(); i < specs.size(); ++i) specs[i].name = "piece " + std::to_string(i);
   layers::LayerSet set = layers::factor(scene, specs);
   Pieces pieces;
-  for (std::size_t i = kept.size(); i < set.layers.size(); ++i)
-    if (!set.layers[i].parts.empty()) pieces.layers.push_back(std::move(set.layers[i]));
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    Layer& layer = set.layers[kept.size() + i];
+    if (layer.parts.empty()) continue;
+    layer.name = own[i].name;
+    pieces.layers.push_back(std::move(layer));
+  }
   pieces.free = pieces.layers.size();
   for (std::size_t i = 0; i < kept.size(); ++i) pieces.layers.push_back(std::move(set.layers[i]));
   for (std::size_t i = 0; i < pieces.layers.size(); ++i) pieces.layers[i].id = static_cast<int>(i);
@@ -96,15 +101,6 @@ bool is_one_body(const layers::SceneFrame& frame, const std::vector<int>& carrie
   return touching(boxes).size() == 1;
 }
 
-/// "wing", "wing and 3 more".
-std::string name_of(const layers::Scene& scene, const Pieces& pieces, const std::vector<int>& group) {
-  const int largest = *std::max_element(group.begin(), group.end(), [&](int a, int b) {
-    return pieces.layers[a].polygons < pieces.layers[b].polygons;
-  });
-  const std::string& name = scene.parts[pieces.layers[largest].parts.front()].name;
-  return group.size() == 1 ? name : name + " and " + std::to_string(group.size() - 1) + " more";
-}
-
 /// "leader" of leader/hull and leader/wing: the shortest beginning up to a "/" that these parts alone have; empty: none.
 std::string common_node(const layers::Scene& scene, const std::vector<int>& parts) {
   const std::string& first = scene.parts[parts.front()].name;
@@ -125,6 +121,20 @@ std::string common_node(const layers::Scene& scene, const std::vector<int>& part
   return "";
 }
 
+/// Of a node that has just these parts; what they begin with; "wing", "wing and 3 more".
+std::string name_of(const layers::Scene& scene, const Pieces& pieces, const std::vector<int>& group,
+                    const std::vector<int>& parts, const Pieces& nodes) {
+  for (std::size_t i = 0; i < nodes.free; ++i)
+    if (nodes.layers[i].parts == parts && !nodes.layers[i].name.empty()) return nodes.layers[i].name;
+  const std::string common = group.size() > 1 ? common_node(scene, parts) : "";
+  if (!common.empty()) return common;
+  const int largest = *std::max_element(group.begin(), group.end(), [&](int a, int b) {
+    return pieces.layers[a].polygons < pieces.layers[b].polygons;
+  });
+  const std::string& name = scene.parts[pieces.layers[largest].parts.front()].name;
+  return group.size() == 1 ? name : name + " and " + std::to_string(group.size() - 1) + " more";
+}
+
 }  // namespace
 
 Pieces pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept) {
@@ -135,8 +145,26 @@ Pieces pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept) {
   return pieces_between(scene, kept, std::move(own));
 }
 
-Pieces node_pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept) {
-  return pieces_between(scene, kept, layers::default_layer_specs(scene));
+Pieces node_pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept,
+                      const std::vector<LayerSpec>& nodes) {
+  if (!nodes.empty()) return pieces_between(scene, kept, nodes);
+  const Pieces pieces = pieces_of(scene, kept);
+  layers::Scene own;  // what says how nodes belong together
+  own.nodes = scene.nodes;
+  own.tracks = scene.tracks;
+  own.skins = scene.skins;
+  own.meshes = scene.meshes;
+  int last = -1;
+  for (std::size_t i = 0; i < pieces.free; ++i)
+    for (const int part : pieces.layers[i].parts) {
+      own.parts.push_back(scene.parts[part]);
+      last = std::max(last, scene.parts[part].node);
+    }
+  for (const layers::Skin& skin : own.skins)
+    for (const int joint : skin.joints) last = std::max(last, joint);
+  own.nodes.resize(static_cast<std::size_t>(last + 1));
+  std::erase_if(own.tracks, [&](const layers::Track& track) { return track.node > last; });
+  return pieces_between(scene, kept, layers::default_layer_specs(own));
 }
 
 std::vector<std::vector<int>> bodies_of(const layers::Scene& scene, const Pieces& pieces) {
@@ -197,8 +225,7 @@ std::vector<LayerSpec> specs_of_groups(const layers::Scene& scene, std::span<con
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const std::vector<int>& parts = taking[others + i].parts;
     LayerSpec spec;
-    const std::string node = groups[i].size() > 1 ? common_node(scene, parts) : "";
-    spec.name = unused_name(used, node.empty() ? name_of(scene, pieces, groups[i]) : node);
+    spec.name = unused_name(used, name_of(scene, pieces, groups[i], parts, nodes));
     used.insert(spec.name);
     spec.part_globs = globs[others + i];
     if (parts.size() > 1 && !is_one_body(frame, carriers, parts)) spec.preferences.bound_each_part = true;

@@ -185,7 +185,7 @@ ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers&
   Settings settings = own_settings(sequence);
   settings.explicit_order.clear();
   ComparedFactoring compared;
-  compared.study = study({*sequence.scene, std::move(kept), settings}, options);
+  compared.study = study({*sequence.scene, std::move(kept), {}, settings}, options);
   compared.all.push_back(planned_layers("now", sequence));
   compared.all.push_back(planned_layers("proposed", with_layers(sequence, compared.study.chosen)));
   for (const Factoring& other : compared.study.others)

@@ -14,6 +14,9 @@ namespace {
 /// The least that layers must save of what one layer for all costs to be called worth it.
 constexpr double kLeastGain = 0.02;
 
+/// Of the frames, and of the work: what is drawn so often for so much is worth being cut.
+constexpr double kNearlyAlways = 0.8, kMuchWork = 0.25;
+
 std::string sums_table(const ComparedFactoring& compared, double display_px) {
   Table table{{"in all"}, {}, 1};
   for (const PlannedLayers& one : compared.all) table.header.push_back(one.name);
@@ -68,6 +71,23 @@ std::string layers_table(const ComparedFactoring& compared) {
   return text;
 }
 
+/// What no layers can help: one part that is drawn nearly always, for much of the work.
+std::string to_be_cut(const ComparedFactoring& compared) {
+  const Summary& summary = compared.all[1].summary;
+  const int frames = static_cast<int>(summary.frames.size());
+  std::string text;
+  for (const LayerSummary& row : summary.layers) {
+    const int renders = row.renders + row.merged_renders;
+    if (row.parts != 1 || row.is_aggregate || frames < 2 || renders < kNearlyAlways * frames ||
+        summary.share_of_cost(row) < kMuchWork)
+      continue;
+    text += "  '" + row.name + "' is one part, drawn in " + std::to_string(renders) + " of " +
+            std::to_string(frames) + " frames for " + formatted("%.0f %%", 100 * summary.share_of_cost(row)) +
+            " of the work: cut into several (a terrain: segments), most of it might be kept\n";
+  }
+  return text;
+}
+
 const PlannedLayers* of_name(const ComparedFactoring& compared, const std::string& name) {
   for (const PlannedLayers& one : compared.all)
     if (one.name == name) return &one;
@@ -104,7 +124,7 @@ std::string factoring_text(const Sequence& sequence, const ComparedFactoring& co
                           : "; motion and depth looked at in " + how_many(study.instants.size(), "frame")) +
                      "\n  " + verdict(compared) + "\n\n";
   text += sums_table(compared, double(sequence.display_px.x) * sequence.display_px.y) + "\n";
-  text += layers_table(compared);
+  text += layers_table(compared) + to_be_cut(compared);
   if (!compared.wanted.empty()) text += "\nfrom what is now to this:\n\n" + changes_table(compared.wanted);
   if (!compared.further.empty()) text += "\nwhat else might be done:\n\n" + changes_table(compared.further);
   return text;

@@ -46,8 +46,8 @@ class FactoringQuestion : public Tool {
     for (const std::string& line : lines("p/frames.jsonl")) {
       const Json frame = Json::parse(line);
       renders += frame["renders"].get<std::int64_t>();
-      polygons += frame["polygons"]["rendered"].get<std::int64_t>();
-      texels += frame["pixels"]["rendered"].get<std::int64_t>();
+      polygons += frame["polygons_rendered"].get<std::int64_t>();
+      texels += frame["pixels_rendered"].get<std::int64_t>();
     }
     return {std::to_string(renders), std::to_string(polygons), std::to_string(texels)};
   }
@@ -120,13 +120,13 @@ TEST_F(FactoringQuestion, BadInputIsOneLine) {
     write("bad.yaml", std::string(kScene) + "layers: " + layers + "\n");
   };
   with("{auto: velocity, max: 0}");
-  expect_bad_input("plan bad.yaml", {"bad.yaml:15", "max", "'0'", "from 1 to 1000"});
+  expect_bad_input("plan bad.yaml", {"bad.yaml:13", "max", "'0'", "from 1 to 1000"});
   with("{auto: speed}");
-  expect_bad_input("plan bad.yaml", {"bad.yaml:15", "auto", "'speed'", "node, velocity"});
+  expect_bad_input("plan bad.yaml", {"bad.yaml:13", "auto", "'speed'", "node, velocity"});
   with("{max: 3}");
-  expect_bad_input("plan bad.yaml", {"bad.yaml:15", "auto"});
+  expect_bad_input("plan bad.yaml", {"bad.yaml:13", "auto"});
   with("{auto: velocity, most: 3}");
-  expect_bad_input("plan bad.yaml", {"bad.yaml:15", "most", "max"});
+  expect_bad_input("plan bad.yaml", {"bad.yaml:13", "most", "max"});
   expect_bad_input("inspect scene.yaml --factoring --max-layers 0", {"--max-layers is 0", "from 1 to 1000"});
   expect_bad_input("inspect scene.yaml --max-layers 5", {"--max-layers", "--factoring"});
   expect_bad_input("inspect scene.yaml --factoring --order", {"--factoring", "must be one"});

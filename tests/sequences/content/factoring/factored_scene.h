@@ -64,7 +64,7 @@ struct FactoredScene {
 
   sequences::FactoringStudy study(int max = sequences::kMostLayersByDefault,
                                   sequences::FactoringWay way = sequences::FactoringWay::Velocity) const {
-    return sequences::study({scene, {}, settings}, {way, max});
+    return sequences::study({scene, {}, {}, settings}, {way, max});
   }
   /// The names of the parts of each layer of a factoring.
   std::vector<std::vector<std::string>> parts_of(const sequences::Factoring& factoring) const {
