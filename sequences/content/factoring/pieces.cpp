@@ -201,7 +201,8 @@ std::vector<std::vector<int>> bodies_of(const layers::Scene& scene, const Pieces
 }
 
 std::vector<LayerSpec> specs_of_groups(const layers::Scene& scene, std::span<const LayerSpec> kept,
-                                       const Pieces& pieces, const std::vector<std::vector<int>>& groups) {
+                                       const Pieces& pieces, const std::vector<std::vector<int>>& groups,
+                                       const Pieces& nodes) {
   std::vector<Layer> taking(pieces.layers.begin() + static_cast<std::ptrdiff_t>(pieces.free),
                             pieces.layers.end());
   const std::size_t others = taking.size();
