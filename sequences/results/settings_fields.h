@@ -44,7 +44,8 @@ void budget(Budget& b, const Visit& visit) {
 
 template <typename Options, typename Visit>
 void regulator(Options& options, const Visit& visit) {
-  auto& [policy, hold_frames, stagger, blend_frames, color_warp, settle_frames, of_thresholds, lookahead, of_budget] = options;
+  auto& [policy, hold_frames, stagger, blend_frames, color_warp, settle_frames, of_thresholds, lookahead,
+         of_budget] = options;
   visit("policy", policy);
   visit("hold_frames", hold_frames);
   visit("stagger", stagger);

@@ -224,7 +224,8 @@ struct ArmScene {
   layers::SceneFrame frame(double root_angle, double hand_angle) const {
     const dmat4 root = turned_by(root_angle, {0, 1, 0});
     const dmat4 arm = root * moved_by({0, 2, 0});
-    return {&scene, 0, {root, arm, arm * moved_by({3, 0, 0}) * turned_by(hand_angle, {0, 0, 1})}, {}, {}, {}};
+    return {&scene, 0, {root, arm, arm * moved_by({3, 0, 0}) * turned_by(hand_angle, {0, 0, 1})}, {}, {},
+            {},     {}};
   }
   layers::Layer layer(std::vector<int> parts, int rigid_node) const {
     layers::Layer result;
