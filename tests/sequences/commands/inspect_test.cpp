@@ -41,7 +41,7 @@ TEST_F(Inspect, BadInputIsOneLine) {
     expect_bad_input(command + " empty", {"'empty' is a folder"});
   expect_bad_input("inspect nothing.glb --parts", {"nothing.glb"});
   expect_bad_input("inspect carousal --parts", {"did you mean 'carousel'"});
-  expect_bad_input("inspect cube.obj --parts --order", {"--parts and --order"});
+  expect_bad_input("inspect cube.obj --parts --order", {"--parts, --order and --factoring"});
   expect_bad_input("inspect cube.obj --out a.png", {"--out", "--parts"});
   expect_bad_input("inspect cube.obj --parts --out a.jpg", {"--out is 'a.jpg'", ".png"});
   expect_bad_input("inspect cube.obj --cycles keep", {"--cycles", "--order"});

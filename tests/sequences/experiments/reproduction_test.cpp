@@ -187,7 +187,8 @@ TEST(PaperBench, AFixedCameraStaysWhereItIsInTheMiddle) {
   const OpenSequence original = opened_moving("moving");
   PlanOf of = own_plan("moving");
   of.fixed_camera = true;
-  const layers::Scene& scene = *changed(original, of).sequence.scene;
+  const OpenSequence fixed = changed(original, of);
+  const layers::Scene& scene = *fixed.sequence.scene;
   const double middle_s = kMovingFrames / 2 / original.sequence.fps;
   const layers::dmat4 wanted = original.sequence.scene->at(middle_s).camera.world_from_camera;
   for (const double t : {0.0, 0.3, 1.0})
