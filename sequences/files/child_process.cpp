@@ -4,7 +4,6 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <spawn.h>
-#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
@@ -53,16 +52,24 @@ class Actions {
 /// Wall time per processor time: the machine may have other work.
 constexpr int kPatienceWithChild = 10;
 
-/// The child has run for less than a millisecond: what it can take before is nothing.
-void limit(pid_t pid, const ChildLimits& limits) {
-  const auto set = [pid](auto resource, std::int64_t most) {
-    const rlimit both{static_cast<rlim_t>(most), static_cast<rlim_t>(most)};
-    if (most > 0) ::prlimit(pid, resource, &both, nullptr);
+/// The limits hold from the program's first instruction on: util-linux's prlimit sets them for itself and becomes the
+/// program. Set from here they would come when it already runs, on a busy machine too late.
+std::vector<std::string> limited(const std::vector<std::string>& arguments, const ChildLimits& limits) {
+  std::vector<std::string> all{"prlimit"};
+  const auto set = [&](const char* option, std::int64_t most) {
+    if (most > 0) all.push_back(option + std::to_string(most));
   };
-  set(RLIMIT_CPU, limits.seconds);
-  set(RLIMIT_AS, limits.memory_bytes);
-  set(RLIMIT_FSIZE, limits.file_bytes);
+  set("--cpu=", limits.seconds);
+  set("--as=", limits.memory_bytes);
+  set("--fsize=", limits.file_bytes);
+  if (all.size() == 1) return arguments;
+  all.push_back("--");
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return all;
 }
+
+/// What prlimit and shells end with where there is no such program.
+constexpr int kNoSuchProgram = 127;
 
 /// False: nothing came until the deadline, if there is one.
 bool wait_for_output(int fd, const ChildLimits& limits, std::chrono::steady_clock::time_point deadline) {
@@ -114,8 +121,9 @@ ChildResult run_child(const std::vector<std::string>& arguments, const ChildOpti
   }
   Actions actions;
   actions.set(options, ends[1]);
+  const std::vector<std::string> command = limited(arguments, options.limits);
   std::vector<char*> argv;
-  for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
+  for (const std::string& a : command) argv.push_back(const_cast<char*>(a.c_str()));
   argv.push_back(nullptr);
   pid_t pid = 0;
   const int error = ::posix_spawnp(&pid, argv[0], actions.get(), nullptr, argv.data(), environ);
@@ -123,10 +131,9 @@ ChildResult run_child(const std::vector<std::string>& arguments, const ChildOpti
   if (error != 0) {
     result.output = arguments[0] + ": " + std::strerror(error);
   } else {
-    result.started = true;
-    limit(pid, options.limits);
     result.output = read_tail(ends[0], pid, options.limits, result.timed_out);
     result.exit_code = wait_for_exit(pid);
+    result.started = command.size() == arguments.size() || result.exit_code != kNoSuchProgram;
     result.timed_out =
         result.timed_out || (options.limits.seconds > 0 &&
                              (result.exit_code == 128 + SIGXCPU || result.exit_code == 128 + SIGKILL));

@@ -162,7 +162,7 @@ void add_surroundings(DocumentedKeys& out, const Source& source) {
   out.page().line("");
   out.put("", top(), "background",
           yaml_color(source.stage.backdrop.value_or(source.bare.model.scene.background)));
-  for (const char* key : {"sky", "terrain"}) out.off("", top(), key);
+  for (const char* key : {"sky", "terrain", "images"}) out.off("", top(), key);
   if (!source.stage.ground) return out.off("", top(), "shapes");
   const MapKeys& keys = keys_below(top(), "shapes");
   const StageGround& ground = *source.stage.ground;
@@ -240,7 +240,7 @@ void add_pipeline(DocumentedKeys& out) {
   out.put("", top(), "regulator", "");
   out.standards("  ", keys_below(top(), "regulator"));
   out.page().line("");
-  for (const char* key : {"warp", "bound", "cycles", "compositor", "material_points"})
+  for (const char* key : {"warp", "bound", "cycles", "compositor", "material_points", "seam"})
     out.standard("", top(), key);
   out.off("", top(), "clip_margin");
   for (const char* key : {"extents", "placement"}) {

@@ -41,6 +41,12 @@ TEST(RunChild, WithinItsLimitsItIsAsWithoutThem) {
   EXPECT_EQ(child.output, "done\n");
 }
 
+TEST(RunChild, OfNoProgramNothingStartsWithLimitsToo) {
+  const ChildResult child = limited({"no-such-program-at-all"}, {60, 0, 0});
+  EXPECT_FALSE(child.started);
+  EXPECT_THAT(child.output, HasSubstr("no-such-program-at-all"));
+}
+
 TEST(RunChild, ALoopWithoutEndIsEnded) {
   const ChildResult child = limited({"sh", "-c", "while :; do :; done"}, {1, 0, 0});
   EXPECT_TRUE(child.timed_out);

@@ -147,7 +147,8 @@ TEST(GltfTangents, TheEffectIsCalledForByItsMaterial) {
   layers::RunEffects coarse;
   coarse.per_pixel = false;
   const auto call = [&](const layers::RunEffects& run) {
-    return layers::effects_called_for(model.scene, set.layers, run).back();
+    const auto effects = layers::effects_called_for(model.scene, set.layers, run);
+    return effects[static_cast<std::size_t>(layers::Effect::NormalMap)];
   };
   EXPECT_EQ(call({}).effect, layers::Effect::NormalMap);
   EXPECT_TRUE(call({}).called);
