@@ -8,6 +8,7 @@ namespace talisman::sequences {
 namespace {
 
 constexpr std::size_t kLettersPerEdit = 3;
+constexpr std::size_t kLettersOfABeginning = 3;
 
 /// Optimal string alignment: the Levenshtein distance in which exchanging two neighbours is one edit too.
 std::size_t edits(const std::string& a, const std::string& b) {
@@ -29,6 +30,10 @@ std::size_t edits(const std::string& a, const std::string& b) {
 }  // namespace
 
 std::string nearest_word(const std::string& written, const std::vector<std::string>& words) {
+  // Who wrote the beginning of one word meant that one, however much is missing.
+  const auto begun = [&](const std::string& word) { return word.starts_with(written); };
+  if (written.size() >= kLettersOfABeginning && std::count_if(words.begin(), words.end(), begun) == 1)
+    return *std::find_if(words.begin(), words.end(), begun);
   std::string nearest;
   std::size_t fewest = written.size() / kLettersPerEdit + 1;
   for (const std::string& word : words) {

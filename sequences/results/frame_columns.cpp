@@ -207,10 +207,10 @@ FrameColumns moving_pictures() {
 
 FrameColumns seams() {
   return {stored<FrameLine>(
-      "open_seam_px", "seams/open_px", "pixels",
+      "open_seam_pixels", "seams/open_px", "pixels",
       "at the edges that layers share, where what is behind them shows: alpha more than 8/255 below "
       "`direct`'s",
-      [](auto& l) -> auto& { return *l.open_seam_px; })};
+      [](auto& l) -> auto& { return *l.open_seam_pixels; })};
 }
 
 /// One comparison of pictures. `Which` returns a Quality by reference.
@@ -254,8 +254,8 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
        [](const FrameLine& l) { return l.light_beside_px.has_value(); },
        [](FrameLine& l) { l.light_beside_px = 0; }},
       {"seams", "with --quality, where layers share edges", false,
-       [](const FrameLine& l) { return l.open_seam_px.has_value(); },
-       [](FrameLine& l) { l.open_seam_px = 0; }},
+       [](const FrameLine& l) { return l.open_seam_pixels.has_value(); },
+       [](FrameLine& l) { l.open_seam_pixels = 0; }},
       {"moving_pictures", "where the scene has image sequences or videos", false,
        [](const FrameLine& l) { return l.upload_bytes.has_value(); },
        [](FrameLine& l) { l.upload_bytes = 0; }},

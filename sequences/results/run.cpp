@@ -151,20 +151,20 @@ class Runner {
   /// The frame is finished by the writer while the next ones are drawn and encoded. Jobs are copied, pictures are not.
   void hand_over(FrameReport report) {
     std::optional<FrameQuality> quality;
-    std::optional<std::int64_t> open_seam_px;
+    std::optional<std::int64_t> open_seam_pixels;
     if (prepared_ && options_.quality) {
       quality = judge(pipeline_, report, *prepared_);
       if (!seams_) seams_.emplace(pipeline_);
-      open_seam_px = seams_->open_in(state_, report, *prepared_);
+      open_seam_pixels = seams_->open_in(state_, report, *prepared_);
     }
     if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
     if (prepared_ && auditor_) auditor_->look(pipeline_, state_, report, *prepared_);
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     if (!prepared_) return writer_.submit([this, shared] { finish_frame(line_of(*shared)); });
-    writer_.submit_prepared([this, shared, quality, open_seam_px]() -> FrameWriter::Job {
+    writer_.submit_prepared([this, shared, quality, open_seam_pixels]() -> FrameWriter::Job {
       FrameLine line = line_of(*shared);
       line.quality = quality;
-      line.open_seam_px = open_seam_px;
+      line.open_seam_pixels = open_seam_pixels;
       const auto picture = std::make_shared<const FramePicture>(encoded_picture(*shared, options_));
       return [this, line, picture] { finish_frame(line, *picture); };
     });

@@ -67,10 +67,10 @@ std::string seam_row(const Summary& s) {
   int worst = -1;
   bool counted = false;
   for (const FrameLine& line : s.frames) {
-    if (!line.open_seam_px) continue;
+    if (!line.open_seam_pixels) continue;
     counted = true;
-    open += *line.open_seam_px;
-    if (*line.open_seam_px > most) most = *line.open_seam_px, worst = line.frame;
+    open += *line.open_seam_pixels;
+    if (*line.open_seam_pixels > most) most = *line.open_seam_pixels, worst = line.frame;
   }
   if (!counted) return {};
   const std::string all =

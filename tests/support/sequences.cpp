@@ -64,7 +64,8 @@ void add_sail(Scene& scene) {
   scene.materials.back().texture = first;
   scene.textures.push_back({"stripes 0", 2, 1, {230, 60, 60, 255, 60, 230, 60, 255}});
   scene.textures.push_back({"stripes 1", 2, 1, {60, 230, 60, 255, 230, 60, 60, 255}});
-  scene.moving_pictures.push_back({"stripes", first, 12, 0, 2, true, {}, 0, {0, 1}, {first, first + 1}});
+  scene.moving_pictures.push_back(
+      {"stripes", first, 12, -1.0 / 12, 2, true, {}, 0, {0, 1}, {first, first + 1}});
   layers::MorphTrack grow;
   grow.weights = {{{0, 2}, {0, 1}, layers::Interpolation::Linear}};
   scene.tracks.push_back({node, grow});

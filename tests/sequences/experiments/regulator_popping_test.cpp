@@ -147,6 +147,7 @@ struct OneSprite {
     report.plan.decisions.resize(1);
     report.plan.decisions[0].action = action;
     report.shown.push_back({0, screen_from_sprite, size_px, 0, {}});
+    report.shown[0].steps = action == regulator::Action::Rerender;
     chunker::Sprite sprite(size_px);
     for (int row = 0; row < sprite.chunks().y; ++row)
       for (int column = 0; column < sprite.chunks().x; ++column) {
