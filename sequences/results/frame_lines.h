@@ -87,7 +87,7 @@ struct FrameLine {
   std::optional<CompressionReport> compression;
   std::optional<VisibilityLine> visibility;  ///< empty: the groups alone gave the order
   std::optional<FrameQuality> quality;
-  std::optional<std::int64_t> open_seam_pixels;        ///< with quality, where layers share edges
+  std::optional<std::int64_t> open_seam_pixels;    ///< with quality, where layers share edges
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   FrameTimes times;                                ///< not in frames.jsonl
 
