@@ -126,37 +126,35 @@ class Changes {
     Groups before, after;
   };
 
-  std::vector<LayerChange> planned_changes(const std::vector<Asked>& asked) {
-    Groups groups;
-    for (const Asked& change : asked)
-      for (const Groups* side : {&change.before, &change.after})
-        groups.insert(groups.end(), side->begin(), side->end());
+  /// A group that several changes are about is planned once; all over the frames that the study looked at.
+  std::vector<LayerChange> planned_changes(std::vector<Asked> asked) {
+    std::map<std::vector<int>, std::size_t> place_of;
     std::vector<LayerSpec> specs;
-    for (std::vector<int>& group : groups) {
-      std::sort(group.begin(), group.end());
-      specs.push_back(specs_of_groups(*sequence_.scene, {}, study_.pieces, {group}).front());
-    }
-    const std::vector<PlannedFactoring> plans =
-        specs.empty() ? std::vector<PlannedFactoring>{}
-                      : plans_apart(*sequence_.scene, specs, settings_, sequence_.frames);
-    std::vector<LayerChange> changes;
-    auto next = plans.begin();
+    for (Asked& change : asked)
+      for (Groups* side : {&change.before, &change.after})
+        for (std::vector<int>& group : *side) {
+          std::sort(group.begin(), group.end());
+          if (place_of.try_emplace(group, specs.size()).second)
+            specs.push_back(specs_of_groups(*sequence_.scene, {}, study_.pieces, {group}).front());
+        }
+    const int frames = study_.chosen.plan.frames;
+    const std::vector<PlannedFactoring> plans = specs.empty()
+                                                    ? std::vector<PlannedFactoring>{}
+                                                    : plans_apart(*sequence_.scene, specs, settings_, frames);
     const auto sum_of = [&](const Groups& side) {
       PlannedFactoring sum;
-      for (std::size_t i = 0; i < side.size(); ++i, ++next) {
-        sum.renders += next->renders;
-        sum.polygons += next->polygons;
-        sum.pixels += next->pixels;
+      for (const std::vector<int>& group : side) {
+        const PlannedFactoring& plan = plans[place_of.at(group)];
+        sum.renders += plan.renders;
+        sum.polygons += plan.polygons;
+        sum.pixels += plan.pixels;
       }
-      sum.frames = sequence_.frames;
+      sum.frames = frames;
       return sum;
     };
-    for (const Asked& change : asked) {
-      LayerChange& planned = changes.emplace_back();
-      planned.what = change.what;
-      planned.before = sum_of(change.before);
-      planned.after = sum_of(change.after);
-    }
+    std::vector<LayerChange> changes;
+    for (const Asked& change : asked)
+      changes.push_back({change.what, sum_of(change.before), sum_of(change.after)});
     std::stable_sort(changes.begin(), changes.end(), [](const LayerChange& a, const LayerChange& b) {
       return a.after.work_ms() - a.before.work_ms() < b.after.work_ms() - b.before.work_ms();
     });
