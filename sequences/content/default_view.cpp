@@ -151,17 +151,24 @@ void add_orbit(layers::Scene& scene, const Orbit& orbit) {
   scene.cameras.push_back(camera);
 }
 
+layers::WorldBounds bounds_of_part(const layers::SceneFrame& frame, const layers::Part& part) {
+  layers::WorldBounds bounds;
+  for (const dvec3& p : layers::world_positions(frame, part)) include(bounds, {p, p});
+  return bounds;
+}
+
+void include(layers::WorldBounds& bounds, const layers::WorldBounds& more) {
+  bounds.lo = glm::min(bounds.lo, more.lo);
+  bounds.hi = glm::max(bounds.hi, more.hi);
+}
+
 layers::WorldBounds bounds_of_scene(const layers::Scene& scene) {
   constexpr int kSteps = 8;
   layers::WorldBounds bounds;
   const double duration = scene.duration_s();
   for (int k = 0; k <= (duration > 0 ? kSteps : 0); ++k) {
     const layers::SceneFrame frame = scene.at(duration * k / kSteps);
-    for (const layers::Part& part : scene.parts)
-      for (const dvec3& p : layers::world_positions(frame, part)) {
-        bounds.lo = glm::min(bounds.lo, p);
-        bounds.hi = glm::max(bounds.hi, p);
-      }
+    for (const layers::Part& part : scene.parts) include(bounds, bounds_of_part(frame, part));
   }
   return bounds;
 }

@@ -64,6 +64,10 @@ void add_model_view(layers::Scene& scene, std::vector<layers::LayerSpec>& specs,
 /// `name` with as many "'" behind it as make it another than those that are used.
 std::string unused_name(const std::set<std::string>& used, std::string name);
 
+/// Of the part's vertices in the world; empty without any.
+layers::WorldBounds bounds_of_part(const layers::SceneFrame& frame, const layers::Part& part);
+/// Grows `bounds` so that it holds `more` too.
+void include(layers::WorldBounds& bounds, const layers::WorldBounds& more);
 /// Bounds of all parts over the scene's duration (sampled at 9 times).
 layers::WorldBounds bounds_of_scene(const layers::Scene& scene);
 

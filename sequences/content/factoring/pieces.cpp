@@ -13,9 +13,9 @@ namespace talisman::sequences {
 
 namespace {
 
-using layers::dvec3;
 using layers::Layer;
 using layers::LayerSpec;
+using layers::WorldBounds;
 
 /// Parts of one body touch: their boxes, in the space of what carries them, are no farther apart than this share of
 /// the larger one's diagonal.
@@ -47,29 +47,17 @@ Pieces pieces_between(const layers::Scene& scene, std::span<const LayerSpec> kep
   return pieces;
 }
 
-struct Box {
-  dvec3 lo{HUGE_VAL}, hi{-HUGE_VAL};
-  double diagonal() const { return glm::length(hi - lo); }
-};
+double diagonal_of(const WorldBounds& box) { return glm::length(box.hi - box.lo); }
 
-Box box_of(const layers::SceneFrame& frame, const layers::Part& part) {
-  Box box;
-  for (const dvec3& p : layers::world_positions(frame, part)) {
-    box.lo = glm::min(box.lo, p);
-    box.hi = glm::max(box.hi, p);
-  }
-  return box;
-}
-
-bool touch(const Box& a, const Box& b) {
-  const double reach = kTouch * std::max(a.diagonal(), b.diagonal());
+bool touch(const WorldBounds& a, const WorldBounds& b) {
+  const double reach = kTouch * std::max(diagonal_of(a), diagonal_of(b));
   for (int axis = 0; axis < 3; ++axis)
     if (a.lo[axis] - reach > b.hi[axis] || b.lo[axis] - reach > a.hi[axis]) return false;
   return true;
 }
 
 /// Boxes that are reached from each other by touching, as lists of their indices.
-std::vector<std::vector<std::size_t>> touching(const std::vector<Box>& boxes) {
+std::vector<std::vector<std::size_t>> touching(const std::vector<WorldBounds>& boxes) {
   std::vector<std::vector<std::size_t>> clusters;
   std::vector<bool> reached(boxes.size());
   for (std::size_t first = 0; first < boxes.size(); ++first) {
@@ -96,8 +84,8 @@ int carrier_of(const layers::Scene& scene, const std::vector<int>& carriers, con
 bool is_one_body(const layers::SceneFrame& frame, const std::vector<int>& carriers,
                  const std::vector<int>& parts) {
   if (carrier_of(*frame.scene, carriers, parts) < 0) return false;
-  std::vector<Box> boxes;
-  for (const int part : parts) boxes.push_back(box_of(frame, frame.scene->parts[part]));
+  std::vector<WorldBounds> boxes;
+  for (const int part : parts) boxes.push_back(bounds_of_part(frame, frame.scene->parts[part]));
   return touching(boxes).size() == 1;
 }
 
@@ -180,14 +168,11 @@ std::vector<std::vector<int>> bodies_of(const layers::Scene& scene, const Pieces
       carried[carrier].push_back(piece);
   }
   for (const auto& [carrier, of] : carried) {
-    std::vector<Box> boxes;
+    std::vector<WorldBounds> boxes;
     for (const int piece : of) {
-      Box box;
-      for (const int part : pieces.layers[piece].parts) {
-        const Box more = box_of(frame, scene.parts[part]);
-        box.lo = glm::min(box.lo, more.lo);
-        box.hi = glm::max(box.hi, more.hi);
-      }
+      WorldBounds box;
+      for (const int part : pieces.layers[piece].parts)
+        include(box, bounds_of_part(frame, scene.parts[part]));
       boxes.push_back(box);
     }
     for (const std::vector<std::size_t>& cluster : touching(boxes)) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 
+#include "sequences/content/default_view.h"
 #include "sequences/content/value_type.h"
 #include "sequences/files/number_text.h"
 
@@ -14,15 +15,6 @@ namespace {
 
 using layers::dvec3;
 using layers::WorldBounds;
-
-WorldBounds bounds_of(const layers::SceneFrame& frame, const layers::Part& part) {
-  WorldBounds bounds;
-  for (const dvec3& p : layers::world_positions(frame, part)) {
-    bounds.lo = glm::min(bounds.lo, p);
-    bounds.hi = glm::max(bounds.hi, p);
-  }
-  return bounds;
-}
 
 /// By part: the name of the geometry layer that takes it.
 std::vector<std::string> layers_of_parts(const Sequence& sequence) {
@@ -161,7 +153,7 @@ PartTree part_tree(const Sequence& sequence) {
     PartRow shown_part{part.name,
                        part.node < 0 ? -1 : row[part.node],
                        scene.meshes[part.mesh].triangle_count(),
-                       bounds_of(frame, part),
+                       bounds_of_part(frame, part),
                        layer_of[i],
                        material.name,
                        textures_of(material)};
