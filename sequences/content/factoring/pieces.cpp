@@ -150,7 +150,7 @@ Pieces node_pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kep
     }
   for (const layers::Skin& skin : own.skins)
     for (const int joint : skin.joints) last = std::max(last, joint);
-  own.nodes.resize(static_cast<std::size_t>(last + 1));
+  own.nodes.resize(static_cast<std::size_t>(last) + 1);
   std::erase_if(own.tracks, [&](const layers::Track& track) { return track.node > last; });
   return pieces_between(scene, kept, layers::default_layer_specs(own));
 }
