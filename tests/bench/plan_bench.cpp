@@ -13,6 +13,8 @@
 #include <benchmark/benchmark.h>
 
 #include "layers/layer.h"
+#include "sequences/content/own_settings.h"
+#include "sequences/content/sequence.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/step.h"
@@ -63,6 +65,24 @@ BENCHMARK_CAPTURE(plan_sequence, threshold_merging, regulator::Policy::Threshold
     ->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(plan_sequence, interpolate, regulator::Policy::Interpolate)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(plan_sequence, budget, regulator::Policy::Budget)->Unit(benchmark::kMillisecond);
+
+/// Whole sequences that are shipped, as `talisman plan` plans them.
+void plan_shipped(benchmark::State& run, const char* name) {
+  const sequences::Sequence sequence = sequences::load_sequence(name);
+  const sequences::Settings settings = sequences::own_settings(sequence);
+  const sequences::Pipeline pipeline = sequences::make_pipeline(*sequence.scene, sequence.layers, settings);
+  double plan_ms = 0;
+  std::int64_t frames = 0;
+  for (auto _ : run) {
+    sequences::PipelineState state(pipeline);
+    for (int frame = 0; frame < sequence.frames; ++frame, ++frames)
+      plan_ms += sequences::step(pipeline, state, frame, nullptr).times.plan_ms;
+  }
+  run.counters["us_per_layer_frame"] =
+      1e3 * plan_ms / (static_cast<double>(frames) * static_cast<double>(sequence.layers.layers.size()));
+}
+BENCHMARK_CAPTURE(plan_shipped, canyon, "canyon")->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(plan_shipped, barnyard, "barnyard")->Unit(benchmark::kMillisecond);
 
 void scene_of_frame(benchmark::State& run) {
   const Workload work(regulator::Policy::Threshold);
