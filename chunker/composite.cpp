@@ -13,6 +13,7 @@
 #include "chunker/blend_constants.h"
 #include "chunker/sampling.h"
 #include "chunker/span_composite.h"
+#include "chunker/tile_reach.h"
 #include "chunker/window.h"
 #include "layers/check.h"
 
@@ -30,9 +31,20 @@ struct Visible {
   const Sprite* sprite = nullptr;
   TapMap map;
   Multiplier multiplier;
+  PixelRange lines;  ///< of the display; no others touch it
 };
 
-std::vector<Visible> visible_sprites(std::span<const PlacedSprite> sprites) {
+/// columns_touched() with the axes of the display exchanged.
+PixelRange lines_touched(const TapMap& map, ivec2 size, ivec2 display) {
+  const auto exchanged = [](const layers::dvec3& row) { return layers::dvec3(row.y, row.x, row.z); };
+  TapMap turned;
+  turned.x = exchanged(map.x);
+  turned.y = exchanged(map.y);
+  turned.w = exchanged(map.w);
+  return columns_touched(turned, size, display.y, 0, display.x - 1);
+}
+
+std::vector<Visible> visible_sprites(std::span<const PlacedSprite> sprites, ivec2 display) {
   std::vector<Visible> visible;
   for (const PlacedSprite& placed : sprites) {
     TALISMAN_CHECK(placed.sprite != nullptr);
@@ -40,8 +52,9 @@ std::vector<Visible> visible_sprites(std::span<const PlacedSprite> sprites) {
     TALISMAN_CHECK_LE(std::max(size.x, size.y), kMaxSpriteSide);
     const auto map = tap_map(placed.screen_from_sprite);
     const Multiplier multiplier = fixed_multiplier(placed.color_multiplier, placed.alpha_multiplier);
-    if (size.x > 0 && size.y > 0 && map && !multiplier.is_zero())
-      visible.push_back({placed.sprite, *map, multiplier});
+    if (size.x <= 0 || size.y <= 0 || !map || multiplier.is_zero()) continue;
+    const PixelRange lines = lines_touched(*map, size, display);
+    if (!lines.empty()) visible.push_back({placed.sprite, *map, multiplier, lines});
   }
   return visible;
 }
@@ -53,16 +66,7 @@ struct Tile {
   PackedPixel* pixels = nullptr;  ///< kBandLines rows of kRunPixels
   int columns() const { return std::min(kRunPixels, display.x - x); }
   int lines() const { return std::min(kBandLines, display.y - y); }
-};
-
-/// Half-open bounds of the first texels of footprints.
-struct TapBounds {
-  RectI rect{1 << 30, 1 << 30, -(1 << 30), -(1 << 30)};
-  void include(int x, int y) {
-    rect = {std::min(rect.x0, x), std::min(rect.y0, y), std::max(rect.x1, x + 1), std::max(rect.y1, y + 1)};
-  }
-  /// All texels of those footprints.
-  RectI texels() const { return {rect.x0, rect.y0, rect.x1 + 1, rect.y1 + 1}; }
+  RectI rect() const { return {x, y, x + columns(), y + lines()}; }
 };
 
 /// The pixels of a run, 0 … columns-1, that touch a sprite.
@@ -81,19 +85,35 @@ struct AffineLines {
   TapBounds bounds;
 };
 
+LineJob line_job(const TapPosition& start, PixelRange pixels) {
+  return {static_cast<std::uint32_t>(start.x), static_cast<std::uint32_t>(start.y), pixels};
+}
+
+/// Every pixel of the tile touches.
+void whole_lines(const Visible& v, const Tile& tile, const TapBounds& bounds, AffineLines& lines) {
+  for (int row = 0; row < tile.lines(); ++row)
+    lines.job.lines[row] = line_job(*run_start(v.map, tile.x, tile.y + row), {0, tile.columns()});
+  lines.pixel_count = static_cast<std::int64_t>(tile.lines()) * tile.columns();
+  lines.line_count = tile.lines();
+  lines.bounds = bounds;
+}
+
 AffineLines affine_lines(const Visible& v, const Tile& tile) {
   AffineLines lines;
   lines.job.step_x = static_cast<std::uint32_t>(v.map.step_x);
   lines.job.step_y = static_cast<std::uint32_t>(v.map.step_y);
   lines.job.multiplier = v.multiplier;
+  if (const auto reach = whole_tile_reach(v.map, v.sprite->size_px(), tile.rect())) {
+    whole_lines(v, tile, reach->outer, lines);
+    return lines;
+  }
   const ivec2 size = v.sprite->size_px();
   for (int row = 0; row < tile.lines(); ++row) {
     const auto start = run_start(v.map, tile.x, tile.y + row);
     if (!start) continue;
     const PixelRange range = touching_pixels(v.map, *start, size, tile.columns());
     if (range.empty()) continue;
-    lines.job.lines[row] = {static_cast<std::uint32_t>(start->x), static_cast<std::uint32_t>(start->y),
-                            range};
+    lines.job.lines[row] = line_job(*start, range);
     lines.pixel_count += range.last - range.first;
     ++lines.line_count;
     for (const int k : {range.first, range.last - 1}) {
@@ -127,6 +147,19 @@ void locate_pixels(const Tile& tile, PixelTaps& taps, const Position& position) 
     }
     taps.line_count += taps.pixel_count > before;
   }
+}
+
+void locate_perspective(const Visible& v, const Tile& tile, PixelTaps& taps) {
+  const ivec2 size = v.sprite->size_px();
+  locate_pixels(tile, taps,
+                [&](int row, int k) { return perspective_tap(v.map, tile.x + k, tile.y + row, size); });
+}
+
+/// Is a sprite opaque in every texel that the tile reads, so that nothing below it shows?
+bool hides(const Visible& v, const Tile& tile) {
+  if (!v.multiplier.is_one()) return false;
+  const auto reach = whole_tile_reach(v.map, v.sprite->size_px(), tile.rect());
+  return reach && is_opaque(*v.sprite, reach->outer.texels());
 }
 
 std::uint64_t texel_pair(Texel left, Texel right) {
@@ -187,9 +220,9 @@ class BandCompositor {
     Tile tile{0, band * kBandLines, {frame_.width, frame_.height}, tile_.data()};
     for (; tile.x < frame_.width; tile.x += kRunPixels) {
       begin(tile);
-      for (Touching& touching : touching_) {
-        if (tile.x + kRunPixels > touching.columns.first && tile.x < touching.columns.last)
-          lay(touching, tile);
+      const std::size_t bottom = lowest_shown(tile);
+      for (std::size_t i = 0; i < touching_.size(); ++i) {
+        if (touching_[i].may_touch(tile)) lay(touching_[i], tile, i < bottom);
       }
       keep(tile);
     }
@@ -202,23 +235,63 @@ class BandCompositor {
     const Visible* visible;
     PixelRange columns;
     bool seen = false;
+    bool may_touch(const Tile& tile) const {
+      return tile.x + kRunPixels > columns.first && tile.x < columns.last;
+    }
   };
 
   void collect(int band) {
     const int first_line = band * kBandLines,
               last_line = std::min(first_line + kBandLines, frame_.height) - 1;
     for (const Visible& v : sprites_) {
+      if (v.lines.last <= first_line || v.lines.first > last_line) continue;
       const PixelRange columns =
           columns_touched(v.map, v.sprite->size_px(), frame_.width, first_line, last_line);
       if (!columns.empty()) touching_.push_back({&v, columns});
     }
   }
 
-  void lay(Touching& touching, const Tile& tile) {
+  /// The topmost sprite that hides those below it in a tile; 0 where none does.
+  std::size_t lowest_shown(const Tile& tile) const {
+    for (std::size_t i = touching_.size(); i-- > 0;) {
+      if (touching_[i].may_touch(tile) && hides(*touching_[i].visible, tile)) return i;
+    }
+    return 0;
+  }
+
+  void lay(Touching& touching, const Tile& tile, bool hidden) {
     const std::int64_t before = counters_.pixels_composited;
-    touching.visible->map.perspective ? lay_perspective(*touching.visible, tile)
-                                      : lay_affine(*touching.visible, tile);
+    const Visible& v = *touching.visible;
+    if (hidden)
+      count_hidden(v, tile);
+    else
+      v.map.perspective ? lay_perspective(v, tile) : lay_affine(v, tile);
     touching.seen |= counters_.pixels_composited > before;
+  }
+
+  /// Counts a sprite as if it were drawn.
+  void count_hidden(const Visible& v, const Tile& tile) {
+    if (const auto reach = whole_tile_reach(v.map, v.sprite->size_px(), tile.rect())) {
+      const bool clear = is_clear(*v.sprite, reach->outer.texels());
+      if (clear || !v.map.perspective || !is_clear(*v.sprite, reach->inner.texels())) {
+        const std::int64_t lines = tile.lines();
+        return count_hidden(Counted{lines * tile.columns(), lines, reach->outer}, *v.sprite);
+      }
+    }
+    if (!v.map.perspective) return count_hidden(affine_lines(v, tile), *v.sprite);
+    PixelTaps taps;
+    locate_perspective(v, tile, taps);
+    count_hidden(taps, *v.sprite);
+  }
+
+  /// What a tile shows, without where.
+  struct Counted {
+    std::int64_t pixel_count, line_count;
+    TapBounds bounds;
+  };
+  template <typename Positions>
+  void count_hidden(const Positions& positions, const Sprite& sprite) {
+    if (count(positions, sprite)) counters_.pixels_hidden += positions.pixel_count;
   }
 
   /// Counts what a tile shows; false when there is nothing to draw.
@@ -256,9 +329,7 @@ class BandCompositor {
 
   void lay_perspective(const Visible& v, const Tile& tile) {
     PixelTaps taps;
-    const ivec2 size = v.sprite->size_px();
-    locate_pixels(tile, taps,
-                  [&](int row, int k) { return perspective_tap(v.map, tile.x + k, tile.y + row, size); });
+    locate_perspective(v, tile, taps);
     if (!count(taps, *v.sprite)) return;
     if (window_.gather(*v.sprite, taps.bounds.rect)) {
       blend_pixels(WindowSource{window_}, taps, v.multiplier, tile);
@@ -297,7 +368,7 @@ class BandCompositor {
 /// All bands of `frame`, whose pixels are there.
 CompositeCounters composite_bands(Frame& frame, std::span<const PlacedSprite> sprites,
                                   std::optional<PackedPixel> background) {
-  const std::vector<Visible> visible = visible_sprites(sprites);
+  const std::vector<Visible> visible = visible_sprites(sprites, {frame.width, frame.height});
   const int bands = (frame.height + kBandLines - 1) / kBandLines;
   std::vector<CompositeCounters> counters(bands);
   tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
@@ -316,6 +387,7 @@ CompositeCounters composite_bands(Frame& frame, std::span<const PlacedSprite> sp
 CompositeCounters& CompositeCounters::operator+=(const CompositeCounters& o) {
   sprite_bands += o.sprite_bands;
   pixels_composited += o.pixels_composited;
+  pixels_hidden += o.pixels_hidden;
   chunks_skipped_clear += o.chunks_skipped_clear;
   return *this;
 }

@@ -8,6 +8,10 @@
 /// For each band only the sprites that touch it are visited; each is sampled bilinearly under its map
 /// (perspective divides per pixel), clear chunks are skipped, opaque runs replace. Bands are independent
 /// jobs; the bytes do not depend on their order.
+///
+/// A 32×32 tile starts at the topmost sprite that is opaque in every texel it reads there and has no
+/// multiplier: the sprites below cannot show (αS = 1 leaves S), so the bytes are those of the whole stack.
+/// They still count as composited, because the hardware that is modelled composites them.
 
 #include <cstdint>
 #include <span>
@@ -35,6 +39,8 @@ struct Frame {
 struct CompositeCounters {
   std::int64_t sprite_bands = 0;          ///< sprite–band pairs visited
   std::int64_t pixels_composited = 0;     ///< display pixels inside sprite rectangles, summed over sprites
+  std::int64_t pixels_hidden = 0;         ///< those of them that were not computed: an opaque sprite of the
+                                          ///< same call covers their tile. Depends on how a stack is cut
   std::int64_t chunks_skipped_clear = 0;  ///< pixel runs skipped because the sprite is clear there
   CompositeCounters& operator+=(const CompositeCounters& o);
   bool operator==(const CompositeCounters&) const = default;

@@ -101,7 +101,15 @@ class FragmentBuffer {
 
   bool has_base(int texel) const { return covered_[texel / kChunkSize] >> (texel % kChunkSize) & 1; }
   void set_base(int texel, const Fragment& fragment) {
-    base_[texel] = fragment;
+    // Field by field: a copy as a whole would load wide what was just stored narrow, and wait for it.
+    Fragment& base = base_[texel];
+    base.color = fragment.color;
+    base.depth.z = fragment.depth.z;
+    base.depth.dx = fragment.depth.dx;
+    base.depth.dy = fragment.depth.dy;
+    base.order = fragment.order;
+    base.next = fragment.next;
+    base.mask = fragment.mask;
     covered_[texel / kChunkSize] |= 1u << (texel % kChunkSize);
   }
   Float4 resolve_busy(int texel) const;

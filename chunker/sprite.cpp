@@ -17,6 +17,30 @@ bool is_clear(const Chunk& chunk) {
   return std::memcmp(&chunk, &clear, sizeof(Chunk)) == 0;
 }
 
+/// Two texels at a time; a block is opaque when the bits of all its alphas are set.
+using TexelPair = std::uint64_t;
+
+TexelPair texel_pair(const Texel* texels) {
+  TexelPair pair;
+  std::memcpy(&pair, texels, sizeof pair);
+  return pair;
+}
+
+std::uint16_t opaque_blocks_of(const Chunk& chunk) {
+  constexpr Texel kAlphaBits[2] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
+  const TexelPair alpha_bits = texel_pair(kAlphaBits);
+  std::uint16_t opaque = 0;
+  for (int block = 0; block < 16; ++block) {
+    const Texel* corner = chunk.texels + block / 4 * (8 * kChunkSize) + block % 4 * 8;
+    TexelPair common = alpha_bits;
+    for (int row = 0; row < 8; ++row) {
+      for (int pair = 0; pair < 4; ++pair) common &= texel_pair(corner + row * kChunkSize + 2 * pair);
+    }
+    if (common == alpha_bits) opaque |= static_cast<std::uint16_t>(1u << block);
+  }
+  return opaque;
+}
+
 }  // namespace
 
 Sprite::Sprite(layers::ivec2 size_px) : size_px_(size_px) {
@@ -30,6 +54,7 @@ Sprite Sprite::assemble(layers::ivec2 size_px, std::span<const int> places, std:
   TALISMAN_CHECK_EQ(places.size(), chunks.size());
   Sprite sprite(size_px);
   sprite.storage_.reserve(chunks.size());
+  sprite.opaque_.reserve(chunks.size());
   for (std::size_t i = 0; i < places.size(); ++i)
     sprite.store(places[i] % sprite.chunks_.x, places[i] / sprite.chunks_.x, chunks[i]);
   return sprite;
@@ -41,6 +66,12 @@ const Chunk* Sprite::chunk(int column, int row) const {
   return index == kClear ? nullptr : &storage_[index];
 }
 
+std::uint16_t Sprite::opaque_blocks(int column, int row) const {
+  TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
+  const std::int32_t index = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
+  return index == kClear ? std::uint16_t{0} : opaque_[index];
+}
+
 void Sprite::store(int column, int row, const Chunk& chunk) {
   TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
   std::int32_t& reference = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
@@ -50,10 +81,12 @@ void Sprite::store(int column, int row, const Chunk& chunk) {
   }
   if (reference != kClear) {
     storage_[reference] = chunk;
+    opaque_[reference] = opaque_blocks_of(chunk);
     return;
   }
   reference = static_cast<std::int32_t>(storage_.size());
   storage_.push_back(chunk);
+  opaque_.push_back(opaque_blocks_of(chunk));
 }
 
 void Sprite::release(std::int32_t& reference) {
@@ -62,9 +95,11 @@ void Sprite::release(std::int32_t& reference) {
   const std::int32_t gap = std::exchange(reference, kClear);
   if (gap != last) {
     storage_[gap] = storage_[last];
+    opaque_[gap] = opaque_[last];
     *std::find(reference_.begin(), reference_.end(), last) = gap;
   }
   storage_.pop_back();
+  opaque_.pop_back();
 }
 
 Texel Sprite::texel(int x, int y) const {

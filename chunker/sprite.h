@@ -31,6 +31,9 @@ class Sprite {
   layers::ivec2 chunks() const { return chunks_; }  ///< columns, rows
   /// The stored chunk at (column, row), or null where it is clear.
   const Chunk* chunk(int column, int row) const;
+  /// Which 8×8 blocks of the chunk at (column, row) have alpha 255 in every texel: bit 4 · row + column of the
+  /// block. A clear chunk has none. Known from the moment a chunk is stored, and no part of bytes().
+  std::uint16_t opaque_blocks(int column, int row) const;
   /// Stores a chunk unless it is clear (then drops what was there). Texels outside size_px must be clear.
   /// Not for several threads at once; those finish their chunks on their own and join them by `assemble`.
   void store(int column, int row, const Chunk& chunk);
@@ -47,6 +50,7 @@ class Sprite {
   layers::ivec2 chunks_{0, 0};
   std::vector<std::int32_t> reference_;  ///< index into storage_, -1: clear
   std::vector<Chunk> storage_;
+  std::vector<std::uint16_t> opaque_;  ///< opaque blocks of each stored chunk
 };
 
 /// The sprites that are alive, one per layer id.

@@ -10,6 +10,23 @@ namespace {
 constexpr int kPieceShift = 4;
 constexpr int kPieceTexels = 1 << kPieceShift;
 
+/// Blocks of 8 that the texels first … last of a sprite's row or column take in one chunk: a half-open range
+/// within 0 … 4.
+struct BlockRange {
+  int first, last;
+};
+BlockRange blocks_in_chunk(int chunk, int first, int last) {
+  const int start = chunk * kChunkSize;
+  return {std::max(first - start, 0) / 8, std::min(last - start, kChunkSize - 1) / 8 + 1};
+}
+
+/// Bits 4 · row + column, as those of Sprite::opaque_blocks.
+unsigned block_bits(BlockRange columns, BlockRange rows) {
+  const unsigned in_row = (1u << columns.last) - (1u << columns.first);
+  const unsigned row_starts = 0x1111u & ((1u << 4 * rows.last) - (1u << 4 * rows.first));
+  return in_row * row_starts;
+}
+
 }  // namespace
 
 static_assert(kChunkSize == 32, "chunk_of() shifts by five");
@@ -29,6 +46,19 @@ bool is_clear(const Sprite& sprite, const layers::RectI& texels) {
   for (int row = first_row; row <= last_row; ++row) {
     for (int column = first_column; column <= last_column; ++column) {
       if (sprite.chunk(column, row)) return false;
+    }
+  }
+  return true;
+}
+
+bool is_opaque(const Sprite& sprite, const layers::RectI& texels) {
+  const layers::ivec2 size = sprite.size_px();
+  if (texels.x0 < 0 || texels.y0 < 0 || texels.x1 > size.x || texels.y1 > size.y) return false;
+  for (int row = chunk_of(texels.y0); row <= chunk_of(texels.y1 - 1); ++row) {
+    const BlockRange rows = blocks_in_chunk(row, texels.y0, texels.y1 - 1);
+    for (int column = chunk_of(texels.x0); column <= chunk_of(texels.x1 - 1); ++column) {
+      const unsigned needed = block_bits(blocks_in_chunk(column, texels.x0, texels.x1 - 1), rows);
+      if ((needed & ~static_cast<unsigned>(sprite.opaque_blocks(column, row))) != 0) return false;
     }
   }
   return true;

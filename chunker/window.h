@@ -41,6 +41,9 @@ const Chunk* chunk_or_clear(const Sprite& sprite, int column, int row);
 /// Is nothing stored under `texels`?
 bool is_clear(const Sprite& sprite, const layers::RectI& texels);
 
+/// Are all of `texels` inside the sprite and in opaque 8×8 blocks?
+bool is_opaque(const Sprite& sprite, const layers::RectI& texels);
+
 /// Chunk column or row of a texel column or row, also of negative ones.
 inline int chunk_of(int texel) { return texel >> 5; }
 

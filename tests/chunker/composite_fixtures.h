@@ -84,6 +84,13 @@ inline PlacedSprite placed(const Sprite& sprite, const dmat3& map) {
   return p;
 }
 
+/// What the hardware would have done. pixels_hidden is what this program left out, and depends on how a stack
+/// is cut into calls.
+inline CompositeCounters of_the_model(CompositeCounters counters) {
+  counters.pixels_hidden = 0;
+  return counters;
+}
+
 /// The first pixel in which two frames differ, or nothing.
 inline std::string difference(const Frame& a, const Frame& b) {
   std::ostringstream out;
