@@ -42,7 +42,8 @@ constexpr std::array kExamples{
     Examples{"inspect", "talisman inspect carousel --order", "talisman inspect model.glb --parts"},
     Examples{"init", "talisman init model.glb > my.yaml", "talisman init model.glb --turntable 10 > my.yaml"},
     Examples{"diff", "talisman diff out/a/frames out/b/frames", "talisman diff a.png b.png --map out/map"},
-    Examples{"export", "talisman export out/carousel --csv", ""},
+    Examples{"export", "talisman export out/carousel --csv",
+             "talisman export out/carousel --sqlite --trace --no-timing"},
     Examples{"warps", "talisman warps --object vase", "talisman warps --bound dop14 --out out/warps-dop14"},
     Examples{"reproduce", "talisman reproduce --quick", "talisman reproduce --only LS97:22 LS97:23"},
     Examples{"accuracy", "talisman accuracy --solvers", "talisman accuracy --regulator carousel"},
@@ -184,6 +185,12 @@ void CommandTree::add_exports() {
   CLI::App* command = app_.add_subcommand("export", "the results of a run in other forms");
   command->add_option("folder", export_.folder, "result folder of a render or plan")->required();
   command->add_flag("--csv", export_.csv, "flat tables: decisions, frames, timing, layers, effects, run");
+  command->add_flag("--sqlite", export_.sqlite, "the same tables as one SQLite file, results.sqlite");
+  command->add_flag("--trace", export_.trace,
+                    "trace.json for Perfetto, chrome://tracing, speedscope: a track per layer, a slice per "
+                    "sprite's life");
+  command->add_flag("--no-timing", export_.no_timing,
+                    "leave out what was measured: the same bytes on every machine");
   command->callback([this] { exit_code_ = run_export(export_, std::cout); });
 
   CLI::App* columns = app_.add_subcommand("columns", "make the column tables of a Markdown file anew");

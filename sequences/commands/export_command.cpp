@@ -7,14 +7,22 @@
 
 #include "sequences/files/atomic_file.h"
 #include "sequences/results/columns_doc.h"
-#include "sequences/results/csv_export.h"
+#include "sequences/results/exports/csv_export.h"
+#include "sequences/results/exports/sqlite_export.h"
+#include "sequences/results/exports/trace_export.h"
 
 namespace talisman::sequences {
 
 int run_export(const ExportOptions& options, std::ostream& out) {
-  if (!options.csv) throw InputError("export needs a form, must be --csv");
+  if (!options.csv && !options.trace && !options.sqlite)
+    throw InputError("export needs a form, must be --csv, --sqlite or --trace");
+  const bool with_timing = !options.no_timing;
+  std::vector<std::string> files;
+  if (options.csv) files = export_csv(options.folder, with_timing);
+  if (options.sqlite) files.push_back(export_sqlite(options.folder, with_timing));
+  if (options.trace) files.push_back(export_trace(options.folder, with_timing));
   std::string names;
-  for (const std::string& name : export_csv(options.folder)) names += (names.empty() ? "" : ", ") + name;
+  for (const std::string& name : files) names += (names.empty() ? "" : ", ") + name;
   out << "wrote " << names << " in " << options.folder << "\n";
   return kSuccess;
 }

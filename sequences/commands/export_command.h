@@ -10,10 +10,11 @@ namespace talisman::sequences {
 
 struct ExportOptions {
   std::string folder;  ///< of a complete run
-  bool csv = false;
+  bool csv = false, trace = false, sqlite = false;
+  bool no_timing = false;  ///< nothing that was measured: the same bytes on every machine
 };
 
-/// Writes the tables into the folder and says which. Throws InputError, OutputError.
+/// Writes every form asked for into the folder and says which files. Throws InputError, OutputError.
 int run_export(const ExportOptions& options, std::ostream& out);
 
 /// Makes the column tables of a Markdown file anew, in place (results/columns_doc.h).

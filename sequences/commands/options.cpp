@@ -268,9 +268,25 @@ Sequence load_with_warnings(const CommandLine& line) {
   return load_and_say(line.sequence, content_options(line), line.content.strict);
 }
 
+namespace {
+
+/// What a sprite contributes to a frame is known where sprites are laid over each other.
+void require_sprite_channels(const ResolvedRun& run) {
+  if (run.options.format != FrameFormat::ExrLayers) return;
+  if (run.settings.regulator.policy == regulator::Policy::Direct)
+    throw InputError("--format exr-layers needs sprites, but --policy is direct");
+  if (run.settings.compositor == Compositor::Extended)
+    throw InputError(
+        "--format exr-layers needs sprites that are laid over each other, but --compositor is extended, must "
+        "be talisman");
+}
+
+}  // namespace
+
 ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {
   ResolvedRun run{settings_of(line, sequence), run_options_of(line, sequence, plan_only)};
   require_built_effects(sequence, run.settings);
+  require_sprite_channels(run);
   return run;
 }
 

@@ -42,8 +42,10 @@ inline constexpr Words<ProgressKind, 4> kProgressWords{{{"auto", ProgressKind::A
                                                         {"plain", ProgressKind::Plain},
                                                         {"none", ProgressKind::None}}};
 
-inline constexpr Words<FrameFormat, 3> kFormatWords{
-    {{"png", FrameFormat::Png}, {"exr", FrameFormat::Exr}, {"none", FrameFormat::None}}};
+inline constexpr Words<FrameFormat, 4> kFormatWords{{{"png", FrameFormat::Png},
+                                                     {"exr", FrameFormat::Exr},
+                                                     {"exr-layers", FrameFormat::ExrLayers},
+                                                     {"none", FrameFormat::None}}};
 
 inline constexpr Words<layers::BoundKind, 3> kBoundWords{{{"box8", layers::BoundKind::Box8},
                                                           {"dop14", layers::BoundKind::Dop14},

@@ -13,7 +13,8 @@
 
 namespace talisman::sequences {
 
-enum class FrameFormat { Png, Exr, None };
+/// ExrLayers: one EXR with the channels of every sprite (results/exports/sprite_channels.h).
+enum class FrameFormat { Png, Exr, ExrLayers, None };
 
 /// 8-bit sRGB picture, 3 bytes per pixel, row by row.
 struct Image8 {

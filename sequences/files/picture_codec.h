@@ -9,9 +9,11 @@
 /// says in words, and who asks makes an error of them.
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace talisman::sequences {
@@ -52,6 +54,16 @@ struct EncodedPicture {
   std::string error;
 };
 
+/// A picture of many channels, which are got band by band: all at once they may be larger than memory.
+struct ChannelPicture {
+  int width = 0, height = 0;
+  std::vector<std::string> channels;  ///< as OpenEXR names them: "R", "wall.age"
+  std::vector<bool> half;             ///< by channel: as half floats; else floats
+  /// Fills in the samples of `rows` rows from row `y` on, channels side by side.
+  std::function<void(int y, int rows, float* samples)> fill;
+  std::vector<std::pair<std::string, std::string>> attributes;  ///< of the header, name and text
+};
+
 /// What the module can do.
 struct PictureCodec {
   OpenedPicture (*open)(const std::string& path, AlphaKind alpha);
@@ -60,6 +72,8 @@ struct PictureCodec {
                               AlphaKind alpha);
   /// Linear RGB as half floats, without loss of those: the same picture always gives the same bytes.
   EncodedPicture (*encode_exr)(int width, int height, const float* rgb);
+  /// The same picture always gives the same bytes.
+  EncodedPicture (*encode_exr_channels)(const ChannelPicture& picture);
 };
 
 /// Loads the module on the first call. Throws OutputError where it is not there (program_folder.h says where it

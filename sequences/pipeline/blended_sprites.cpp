@@ -19,4 +19,14 @@ BlendedSprites blended_sprites(const PipelineState& state, const FrameReport& re
   return blended;
 }
 
+chunker::PlacedSprite placed_sprite(const ShownSprite& shown, const chunker::SpriteStore& sprites,
+                                    const BlendedSprites& blended) {
+  chunker::PlacedSprite placed;
+  placed.sprite = shown.old ? &blended.at(shown.layer) : sprites.find(shown.layer);
+  placed.screen_from_sprite = shown.screen_from_sprite;
+  placed.alpha_multiplier = shown.multipliers.alpha;
+  placed.color_multiplier = shown.multipliers.color;
+  return placed;
+}
+
 }  // namespace talisman::sequences

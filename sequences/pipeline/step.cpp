@@ -264,29 +264,19 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
   draw_missing_fades(pipeline, state, instants, prepared, report);
 }
 
-chunker::PlacedSprite placed_of(const ShownSprite& sprite, const chunker::SpriteStore& sprites,
-                                const BlendedSprites& blended) {
-  chunker::PlacedSprite placed;
-  placed.sprite = sprite.old ? &blended.at(sprite.layer) : sprites.find(sprite.layer);
-  placed.screen_from_sprite = sprite.screen_from_sprite;
-  placed.alpha_multiplier = sprite.multipliers.alpha;
-  placed.color_multiplier = sprite.multipliers.color;
-  return placed;
-}
-
 chunker::CompositeResult composite_shown(const Pipeline& pipeline, const FrameReport& report,
                                          const chunker::SpriteStore& sprites, const BlendedSprites& blended) {
   const layers::ivec2 display_px = pipeline.settings.view.display_px;
   if (!report.order.resolved.empty() || any_registers(report.layers)) {
     std::vector<LayerSprite> placed;
     for (const ShownSprite& sprite : report.shown)
-      placed.push_back({sprite.layer, placed_of(sprite, sprites, blended), report.layers[sprite.layer].base,
-                        use_of(report.layers[sprite.layer])});
+      placed.push_back({sprite.layer, placed_sprite(sprite, sprites, blended),
+                        report.layers[sprite.layer].base, use_of(report.layers[sprite.layer])});
     return composite_extended(placed, report.order, display_px, pipeline.scene.background);
   }
   std::vector<chunker::PlacedSprite> placed;
   placed.reserve(report.shown.size());
-  for (const ShownSprite& sprite : report.shown) placed.push_back(placed_of(sprite, sprites, blended));
+  for (const ShownSprite& sprite : report.shown) placed.push_back(placed_sprite(sprite, sprites, blended));
   return chunker::composite(placed, display_px, pipeline.scene.background);
 }
 

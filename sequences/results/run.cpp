@@ -20,6 +20,7 @@
 #include "sequences/pipeline/stopwatch.h"
 #include "sequences/results/audit.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/exports/sprite_channels.h"
 #include "sequences/results/run_folder.h"
 #include "sequences/results/run_identity.h"
 #include "sequences/results/separate_pictures.h"
@@ -53,7 +54,8 @@ struct FramePicture {
   double ms = 0;                          ///< it took
 };
 
-FramePicture encoded_picture(const FrameReport& report, const RunOptions& options) {
+FramePicture encoded_picture(const FrameReport& report, const RunOptions& options,
+                             const std::shared_ptr<const SpriteChannels>& channels) {
   const Stopwatch watch;
   FramePicture picture;
   switch (options.format) {
@@ -62,6 +64,9 @@ FramePicture encoded_picture(const FrameReport& report, const RunOptions& option
       break;
     case FrameFormat::Exr:
       picture.encoded = encoded_exr(report.picture);
+      break;
+    case FrameFormat::ExrLayers:
+      picture.encoded = encoded_exr(report.picture, *channels);
       break;
     case FrameFormat::None:
       break;
@@ -159,13 +164,16 @@ class Runner {
     }
     if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
     if (prepared_ && auditor_) auditor_->look(pipeline_, state_, report, *prepared_);
+    std::shared_ptr<const SpriteChannels> channels;
+    if (prepared_ && options_.format == FrameFormat::ExrLayers)
+      channels = std::make_shared<const SpriteChannels>(sprite_channels(pipeline_, state_, report));
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     if (!prepared_) return writer_.submit([this, shared] { finish_frame(line_of(*shared)); });
-    writer_.submit_prepared([this, shared, quality, open_seam_pixels]() -> FrameWriter::Job {
+    writer_.submit_prepared([this, shared, quality, open_seam_pixels, channels]() -> FrameWriter::Job {
       FrameLine line = line_of(*shared);
       line.quality = quality;
       line.open_seam_pixels = open_seam_pixels;
-      const auto picture = std::make_shared<const FramePicture>(encoded_picture(*shared, options_));
+      const auto picture = std::make_shared<const FramePicture>(encoded_picture(*shared, options_, channels));
       return [this, line, picture] { finish_frame(line, *picture); };
     });
   }

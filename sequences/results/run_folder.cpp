@@ -28,6 +28,7 @@ const char* extension_of(FrameFormat format) {
     case FrameFormat::Png:
       return ".png";
     case FrameFormat::Exr:
+    case FrameFormat::ExrLayers:
       return ".exr";
     case FrameFormat::None:
       return "";

@@ -22,6 +22,8 @@ const char* name_of(FrameFormat format) {
       return "png";
     case FrameFormat::Exr:
       return "exr";
+    case FrameFormat::ExrLayers:
+      return "exr-layers";
     case FrameFormat::None:
       return "none";
   }

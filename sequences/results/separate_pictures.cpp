@@ -2,6 +2,7 @@
 #include "sequences/results/separate_pictures.h"
 
 #include "sequences/files/image_io.h"
+#include "sequences/pipeline/blended_sprites.h"
 #include "sequences/results/layer_words.h"
 
 namespace talisman::sequences {
@@ -9,15 +10,6 @@ namespace talisman::sequences {
 namespace {
 
 using layers::LayerKind;
-
-chunker::PlacedSprite placed(const PipelineState& state, const ShownSprite& shown) {
-  chunker::PlacedSprite p;
-  p.sprite = state.sprites.find(shown.layer);
-  p.screen_from_sprite = shown.screen_from_sprite;
-  p.alpha_multiplier = shown.multipliers.alpha;
-  p.color_multiplier = shown.multipliers.color;
-  return p;
-}
 
 /// What makes one kind of sprite visible by itself.
 layers::vec3 behind(const Pipeline& pipeline, LayerKind kind) {
@@ -42,6 +34,7 @@ void write(const Pipeline& pipeline, const std::vector<chunker::PlacedSprite>& s
 void write_separate(const Pipeline& pipeline, const PipelineState& state, const FrameReport& report,
                     const std::string& folder) {
   const LayerTable& all = report.layers;
+  const BlendedSprites blended = blended_sprites(state, report);
   const auto base_of = [&](const ShownSprite& s) {
     return all[s.layer].base < 0 ? s.layer : all[s.layer].base;
   };
@@ -50,7 +43,7 @@ void write_separate(const Pipeline& pipeline, const PipelineState& state, const 
     std::vector<chunker::PlacedSprite> sum;
     const std::size_t first = i;
     for (; i < report.shown.size() && base_of(report.shown[i]) == base; ++i)
-      sum.push_back(placed(state, report.shown[i]));
+      sum.push_back(placed_sprite(report.shown[i], state.sprites, blended));
     if (sum.size() < 2) continue;
     for (std::size_t k = first; k < i; ++k) {
       const layers::Layer& layer = all[report.shown[k].layer];

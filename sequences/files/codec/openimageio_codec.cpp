@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 /// The module behind files/picture_codec.h.
 
+#include <algorithm>
+
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
@@ -12,13 +14,21 @@ namespace {
 /// A date that is plainly none.
 constexpr const char* kNoDate = "1970:01:01 00:00:00";
 
+/// Of channels in named layers behind R, G and B (a file of --format exr-layers) none is read.
+int colour_channels(const OIIO::ImageSpec& spec) {
+  const bool layered = spec.nchannels > 3 && spec.channelnames[0] == "R" && spec.channelnames[2] == "B" &&
+                       spec.channelnames[3].find('.') != std::string::npos;
+  return layered ? 3 : spec.nchannels;
+}
+
 class Reader : public PictureReader {
  public:
   explicit Reader(std::unique_ptr<OIIO::ImageInput> input) : input_(std::move(input)) {
     const OIIO::ImageSpec& spec = input_->spec();
     const bool srgb = spec.get_string_attribute("oiio:ColorSpace", "Linear") == "sRGB";
-    info_ = {spec.width,     spec.height, spec.depth,
-             spec.nchannels, spec.deep,   spec.format.is_floating_point() && !srgb};
+    info_ = {spec.width, spec.height,
+             spec.depth, colour_channels(spec),
+             spec.deep,  spec.format.is_floating_point() && !srgb};
   }
   std::string read(std::uint8_t* samples) override { return read_as(OIIO::TypeDesc::UINT8, samples); }
   std::string read(float* samples) override { return read_as(OIIO::TypeDesc::FLOAT, samples); }
@@ -90,10 +100,36 @@ EncodedPicture encode_exr(int width, int height, const float* rgb) {
   return encode("picture.exr", spec, OIIO::TypeDesc::FLOAT, rgb);
 }
 
+/// Chunks of OpenEXR's zip are 16 lines high.
+constexpr int kBandLines = 32;
+
+EncodedPicture encode_exr_channels(const ChannelPicture& picture) {
+  const int channels = static_cast<int>(picture.channels.size());
+  OIIO::ImageSpec spec(picture.width, picture.height, channels, OIIO::TypeDesc::FLOAT);
+  spec.channelnames = picture.channels;
+  for (const bool half : picture.half)
+    spec.channelformats.push_back(half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+  spec.attribute("compression", "zip");  // lossless; most channels are constant in runs
+  spec.attribute("DateTime", kNoDate);
+  for (const auto& [name, text] : picture.attributes) spec.attribute(name, text);
+  EncodedPicture encoded;
+  OIIO::Filesystem::IOVecOutput memory(encoded.bytes);
+  const auto out = OIIO::ImageOutput::create("picture.exr", &memory);
+  bool written = out && out->open("picture.exr", spec);
+  std::vector<float> band(static_cast<std::size_t>(picture.width) * kBandLines * channels);
+  for (int y = 0; written && y < picture.height; y += kBandLines) {
+    const int rows = std::min(kBandLines, picture.height - y);
+    picture.fill(y, rows, band.data());
+    written = out->write_scanlines(y, y + rows, 0, OIIO::TypeDesc::FLOAT, band.data());
+  }
+  if (!written || !out->close()) encoded.error = out ? out->geterror() : why_not();
+  return encoded;
+}
+
 }  // namespace
 
 extern "C" __attribute__((visibility("default"))) const PictureCodec* talisman_picture_codec() {
-  static constexpr PictureCodec codec{open, open_bytes, encode_exr};
+  static constexpr PictureCodec codec{open, open_bytes, encode_exr, encode_exr_channels};
   return &codec;
 }
 

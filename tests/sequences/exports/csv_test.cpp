@@ -148,7 +148,7 @@ TEST_F(Export, OfWhatIsNoCompleteRunIsOneErrorLine) {
                    {"empty", "holds no results", "must be the folder of a render or a plan"});
   expect_bad_input("export nowhere --csv", {"nowhere", "is no folder"});
   expect_bad_input("export cube.obj --csv", {"cube.obj", "is no folder"});
-  expect_bad_input("export empty", {"must be --csv"});
+  expect_bad_input("export empty", {"must be --csv, --sqlite or --trace"});
   ASSERT_EQ(run("plan cube.obj --frames 0-4 --size 64x48 --progress none --out p").exit_code, 0);
   const std::string frames = read("p/frames.jsonl"), summary = read("p/summary.json");
   write("p/frames.jsonl.partial", "");
