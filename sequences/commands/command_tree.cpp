@@ -44,6 +44,7 @@ constexpr std::array kExamples{
     Examples{"diff", "talisman diff out/a/frames out/b/frames", "talisman diff a.png b.png --map out/map"},
     Examples{"export", "talisman export out/carousel --csv",
              "talisman export out/carousel --sqlite --trace --no-timing"},
+    Examples{"report", "talisman report out/carousel", "talisman report out/a out/b --out compared.html"},
     Examples{"warps", "talisman warps --object vase", "talisman warps --bound dop14 --out out/warps-dop14"},
     Examples{"reproduce", "talisman reproduce --quick", "talisman reproduce --only LS97:22 LS97:23"},
     Examples{"accuracy", "talisman accuracy --solvers", "talisman accuracy --regulator carousel"},
@@ -192,6 +193,14 @@ void CommandTree::add_exports() {
   command->add_flag("--no-timing", export_.no_timing,
                     "leave out what was measured: the same bytes on every machine");
   command->callback([this] { exit_code_ = run_export(export_, std::cout); });
+
+  CLI::App* report = app_.add_subcommand("report", "a run as a page, or two beside each other");
+  report->add_option("folder", report_.folders, "result folder of a render or plan; a second one to compare")
+      ->required()
+      ->expected(1, 2);
+  report->add_option("--out", report_.out, "file of the page =report.html in the first folder");
+  report->add_flag("--no-thumbnails", report_.no_thumbnails, "no pictures of frames");
+  report->callback([this] { exit_code_ = run_report(report_, std::cout); });
 
   CLI::App* columns = app_.add_subcommand("columns", "make the column tables of a Markdown file anew");
   columns->group("");  // for those who change a column; not in --help

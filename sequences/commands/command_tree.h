@@ -16,6 +16,7 @@
 #include "sequences/commands/init.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/options.h"
+#include "sequences/commands/report_command.h"
 #include "sequences/commands/reproduce.h"
 #include "sequences/commands/tune.h"
 #include "sequences/commands/warps.h"
@@ -58,6 +59,7 @@ class CommandTree {
   InitOptions init_;
   DiffOptions diff_;
   ExportOptions export_;
+  ReportOptions report_;
   std::string documented_;
   WarpsOptions warps_;
   ReproduceOptions reproduce_;

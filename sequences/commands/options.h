@@ -43,6 +43,7 @@ struct CommandLine {
   std::optional<int> audit;  ///< every so many reuses; `talisman audit` writes no pictures of frames
   bool audit_alone = false;
   bool quiet = false;  ///< no progress, no table
+  bool no_report = false, no_thumbnails = false;
   bool force = false;  ///< take a folder that holds other files
   ContentWords content;
 };

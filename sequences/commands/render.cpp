@@ -12,6 +12,9 @@
 #include "sequences/files/errors.h"
 #include "sequences/files/quoted.h"
 #include "sequences/results/advice.h"
+#include "sequences/results/report/page_assets.h"
+#include "sequences/results/report/report.h"
+#include "sequences/results/report/what_if.h"
 
 namespace talisman::sequences {
 
@@ -57,6 +60,16 @@ std::string advice_text(const Sequence& sequence, const ResolvedRun& run, const 
   return text.empty() ? text : "\n" + text;
 }
 
+/// The report, also of a run that was stopped; none in a build that has none.
+void write_page(const Sequence& sequence, const ResolvedRun& run, const RunOutcome& outcome,
+                const CommandLine& line) {
+  if (line.no_report || line.audit_alone || !has_report()) return;
+  const RunOptions& options = run.options;
+  if (outcome.complete && !options.plan_only && has_threshold(run.settings))
+    write_what_if(sequence, run.settings, {options.first_frame, options.last_frame}, options.out);
+  write_report({options.out}, {}, !line.no_thumbnails);
+}
+
 }  // namespace
 
 int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool>& stop, std::ostream& out) {
@@ -66,6 +79,7 @@ int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool
   std::optional<global_control> threads;
   if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);
   const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop);
+  write_page(sequence, resolved, outcome, line);
   say_capped_sprites(outcome.summary, resolved.settings.placement.max_sprite_px);
   if (!outcome.complete) {
     std::fprintf(stderr, "error: stopped after %zu frames%s\n", outcome.summary.frames.size(),

@@ -19,11 +19,13 @@ namespace talisman::sequences {
 
 /// A layer, or a shadow map, at one frame. Keeps references.
 struct DecisionRow {
-  DecisionRow(const FrameReport& report, const regulator::LayerDecision& of_layer)
+  DecisionRow(const FrameReport& report, const regulator::LayerDecision& of_layer,
+              const layers::SpritePlacement* sprite_placement = nullptr)
       : frame(report.frame),
         name(report.layers[of_layer.layer].name),
         assessment(report.assessments[of_layer.layer]),
-        decision(of_layer) {}
+        decision(of_layer),
+        placement(sprite_placement) {}
   DecisionRow(const FrameReport& report, const ShadowMapRow& map)
       : frame(report.frame), name(map.name), assessment(map.assessment), decision(map.decision) {}
 
@@ -31,6 +33,8 @@ struct DecisionRow {
   const std::string& name;
   const regulator::LayerAssessment& assessment;
   const regulator::LayerDecision& decision;
+  const layers::SpritePlacement* placement =
+      nullptr;  ///< of the sprite shown; null: none is, or it is a map's
 };
 
 /// All rows of a frame, in the order of decisions.jsonl: the author's layers, the aggregates that exist, the

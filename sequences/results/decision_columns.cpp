@@ -85,6 +85,33 @@ DecisionColumns warp_columns() {
       computed<Row>("warp_w", "warp/8", "", "likewise", [](const Row& r) { return entry_of_warp<2, 2>(r); })};
 }
 
+template <int entry>
+Value entry_of_placement(const Row& row) {
+  const layers::dmat3 map = layers::to_mat3(row.placement->screen_from_sprite);
+  return value_of(map[entry % 3][entry / 3]);
+}
+
+/// Where the sprite was when it was drawn. With the warp: where it is shown.
+DecisionColumns placement_columns() {
+  const char* place = "the map of texels to display positions when the sprite was drawn, row by row";
+  return {computed<Row>("sprite_xx", "sprite/screen_from_sprite/0", "px", place,
+                        [](const Row& r) { return entry_of_placement<0>(r); }),
+          computed<Row>("sprite_xy", "sprite/screen_from_sprite/1", "px", "likewise",
+                        [](const Row& r) { return entry_of_placement<1>(r); }),
+          computed<Row>("sprite_x", "sprite/screen_from_sprite/2", "px", "likewise",
+                        [](const Row& r) { return entry_of_placement<2>(r); }),
+          computed<Row>("sprite_yx", "sprite/screen_from_sprite/3", "px", "likewise",
+                        [](const Row& r) { return entry_of_placement<3>(r); }),
+          computed<Row>("sprite_yy", "sprite/screen_from_sprite/4", "px", "likewise",
+                        [](const Row& r) { return entry_of_placement<4>(r); }),
+          computed<Row>("sprite_y", "sprite/screen_from_sprite/5", "px", "likewise",
+                        [](const Row& r) { return entry_of_placement<5>(r); }),
+          computed<Row>("sprite_width", "sprite/size/0", "texels", "of the sprite shown",
+                        [](const Row& r) { return r.placement->size_px.x; }),
+          computed<Row>("sprite_height", "sprite/size/1", "texels", "likewise",
+                        [](const Row& r) { return r.placement->size_px.y; })};
+}
+
 DecisionColumns what_is_shown() {
   return {
       computed<Row>(
@@ -229,12 +256,20 @@ DecisionColumns cost_columns() {
                     [](const Row& r) { return r.decision.cost.bytes; })};
 }
 
+/// Null where nothing is shown.
+const layers::SpritePlacement* placement_shown(const PipelineState& state, const FrameReport& report,
+                                               int layer) {
+  const layers::SpritePlacement& placement = state.memory[layer].placement;
+  const bool is_shown = report.plan.decisions[layer].action != regulator::Action::Drop && !placement.empty();
+  return is_shown ? &placement : nullptr;
+}
+
 }  // namespace
 
 std::vector<DecisionRow> decision_rows(const PipelineState& state, const FrameReport& report) {
   std::vector<DecisionRow> rows;
   for (const int layer : layers_with_lines(state, report))
-    rows.emplace_back(report, report.plan.decisions[layer]);
+    rows.emplace_back(report, report.plan.decisions[layer], placement_shown(state, report, layer));
   for (const ShadowMapRow& map : report.shadow_maps) rows.emplace_back(report, map);
   return rows;
 }
@@ -242,10 +277,13 @@ std::vector<DecisionRow> decision_rows(const PipelineState& state, const FrameRe
 const ColumnTable<DecisionRow>& decision_table() {
   static const ColumnTable<DecisionRow> table = [] {
     ColumnTable<DecisionRow> t{"decisions", "talisman.decision/1", {}, {}};
-    for (const DecisionColumns& part : {what_was_done(), warp_columns(), what_is_shown(), geometric_columns(),
-                                        photometric_columns(), remaining_fiducials(), cost_columns()})
+    for (const DecisionColumns& part :
+         {what_was_done(), warp_columns(), placement_columns(), what_is_shown(), geometric_columns(),
+          photometric_columns(), remaining_fiducials(), cost_columns()})
       t.columns.insert(t.columns.end(), part.begin(), part.end());
-    t.groups = {{"fiducials", "of layers in view that have an old sprite", true,
+    t.groups = {{"sprite", "of layers whose sprite is shown", true,
+                 [](const DecisionRow& r) { return r.placement != nullptr; }},
+                {"fiducials", "of layers in view that have an old sprite", true,
                  [](const DecisionRow& r) { return assessment(r).has_sprite && assessment(r).in_view; }}};
     return t;
   }();

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "sequences/files/number_text.h"
+#include "sequences/results/reason_kind.h"
 
 namespace talisman::sequences {
 
@@ -24,8 +25,9 @@ bool is_relation(const std::string& word) {
   return word == ">" || word == "<" || word == ">=" || word == "<=";
 }
 
-/// Of one reason: `times` is 1.
-ReasonKind kind_of(const std::string& reason) {
+}  // namespace
+
+ReasonKind kind_of_reason(const std::string& reason) {
   ReasonKind kind{{}, {}, {}, 1};
   // What follows a semicolon or a bracket says more about it; what follows a comma, how it came to be.
   std::istringstream in(reason.substr(0, reason.find_first_of(";(,")));
@@ -43,8 +45,6 @@ ReasonKind kind_of(const std::string& reason) {
   return kind;
 }
 
-}  // namespace
-
 std::optional<double> ReasonKind::median() const {
   if (values.empty()) return std::nullopt;
   std::vector<double> sorted = values;
@@ -54,7 +54,7 @@ std::optional<double> ReasonKind::median() const {
 }
 
 void ReasonTally::add(const std::string& reason) {
-  ReasonKind kind = kind_of(reason);
+  ReasonKind kind = kind_of_reason(reason);
   const auto known =
       std::find_if(kinds_.begin(), kinds_.end(), [&](const ReasonKind& k) { return k.words == kind.words; });
   if (known == kinds_.end()) {

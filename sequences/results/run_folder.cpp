@@ -85,7 +85,8 @@ KeptRun complete_frames(const RunOptions& options) {
 void remove_old_results(const RunOptions& options, bool pictures_are_ours) {
   for (const std::string name : {"decisions.jsonl", "frames.jsonl", "timing.jsonl"})
     for (const char* state : {"", ".partial"}) fs::remove(options.out + "/" + name + state);
-  fs::remove(options.out + "/summary.json");
+  for (const char* name : {"summary.json", "what-if.json", "report.html"})
+    fs::remove(options.out + "/" + name);
   if (options.plan_only || !pictures_are_ours) return;
   fs::remove(options.out + "/video.mp4");
   for (const fs::directory_entry& entry : fs::directory_iterator(options.out + "/frames")) {

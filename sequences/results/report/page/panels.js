@@ -1,0 +1,121 @@
+// Why was it drawn, or why not? One decision in full, beside that of the other run where there are two; and the layers of
+// its frame.
+
+// A fiducial: its column, the setting that limits it, its unit; `least`: the limit is from below; `off`: the limit's value
+// that switches it off.
+const kFiducials = [
+  {name: "geometric", column: "warp_geometric_px", limit: "geometric_px", unit: "px", off: null},
+  {name: "photometric", column: "photometric_color", limit: "photometric", unit: "", off: 0},
+  {name: "light angle", column: "light_angle_rad", limit: "light_angle_rad", unit: "rad", off: 0},
+  {name: "magnification", column: "magnification", limit: "magnification", unit: "", off: 0},
+  {name: "minification", column: "minification", limit: "minification", unit: "", off: 0, least: true},
+  {name: "anisotropy", column: "anisotropy", limit: "anisotropy", unit: "", off: 0},
+  {name: "uncovered edge", column: "uncovered_px", limit: "uncovered_px", unit: "px", off: -1},
+  {name: "turned side", column: "turned_px", limit: "turned_px", unit: "px", off: 0}];
+const kWithLimits = ["threshold", "lookahead", "oracle"];
+const kDone = {rerender: "Drawn again", reuse: "Its sprite is used again", drop: "Not shown"};
+
+// The limit of one decision; null: not regulated.
+function limitOf(run, fiducial, row) {
+  if (!kWithLimits.includes(run.settings.policy)) return null;
+  let limit = run.settings[fiducial.limit];
+  if (run.value("layer", row).startsWith("shadow map of ")) {
+    if (fiducial.limit !== "geometric_px") return null;
+    return run.settings.shadow_map_px || null;
+  }
+  if (typeof limit !== "number" || limit === fiducial.off || (fiducial.off === -1 && limit < 0)) return null;
+  if (fiducial.limit === "geometric_px") limit /= run.value("geometric_weight", row) ?? 1;
+  return limit;
+}
+
+// The value as a share of its limit, as a bar.
+function bar(value, limit, least) {
+  const share = least ? limit / Math.max(value, 1e-9) : limit > 0 ? value / limit : value > 0 ? 2 : 0;
+  const beyond = least ? value < limit : value > limit;
+  const box = element("span", {class: `bar${beyond ? " beyond" : ""}`, "aria-hidden": "true"});
+  const fill = element("span");
+  fill.style.width = `${Math.min(100, 50 * share)}%`;
+  box.append(fill);
+  return box;
+}
+
+class PropertiesPanel {
+  constructor(box, runs) {
+    Object.assign(this, {box, runs});
+  }
+  rows() {
+    return this.runs.map((run) => run.row(selection.layer, selection.frame));
+  }
+  draw() {
+    const rows = this.rows(), several = this.runs.length > 1;
+    const parts = [element("h3", {}, element("bdi", {}, selection.layer), ` in frame ${selection.frame}`)];
+    this.runs.forEach((run, k) => {
+      const row = rows[k], decision = run.value("decision", row);
+      const words = row < 0 ? "No line: the layer is not there in this frame." : `${kDone[decision]}: ${run.value("reason", row) ?? ""}`;
+      const swatch = element("span", {class: "swatch", "aria-hidden": "true"});
+      swatch.style.background = color(run.kind(row));
+      parts.push(element("p", {class: "why"}, swatch, several ? element("b", {}, `${"AB"[k]} `) : "", element("bdi", {}, words)));
+    });
+    parts.push(this.fiducials(rows), this.rest(rows));
+    this.box.replaceChildren(...parts);
+  }
+  head(...words) {
+    const names = this.runs.length > 1 ? this.runs.map((_, k) => "AB"[k]) : ["value"];
+    return element("thead", {}, element("tr", {}, ...words.slice(0, 1).map((w) => element("th", {scope: "col"}, w)),
+                                        ...names.map((n) => element("th", {scope: "col", class: "n"}, n)),
+                                        ...words.slice(1).map((w) => element("th", {scope: "col", class: "n"}, w))));
+  }
+  fiducials(rows) {
+    const lines = [];
+    for (const fiducial of kFiducials) {
+      const values = this.runs.map((run, k) => run.value(fiducial.column, rows[k]));
+      if (values.every((value) => value === null)) continue;
+      const at = selection.run, value = values[at], limit = rows[at] < 0 ? null : limitOf(this.runs[at], fiducial, rows[at]);
+      lines.push(element("tr", {},
+        element("th", {scope: "row"}, `${fiducial.name}${fiducial.unit ? ", " + fiducial.unit : ""}`),
+        ...values.map((v) => element("td", {class: "n", "data-column": fiducial.column}, numberElement(v))),
+        element("td", {class: "n"}, limit === null ? "–" : fiducial.least ? "≥ " : "≤ ", limit === null ? "" : numberElement(limit)),
+        element("td", {}, value === null || limit === null ? "" : bar(value, limit, fiducial.least))));
+    }
+    if (lines.length === 0) return element("p", {class: "note"}, "No fiducials: there is no old sprite in view.");
+    return element("table", {class: "properties"}, element("caption", {}, "Fiducials of the old sprite against their limits"),
+                   this.head("fiducial", "limit", ""), element("tbody", {}, ...lines));
+  }
+  // All other columns, by what they are about.
+  rest(rows) {
+    const skip = new Set(["frame", "layer", "decision", "reason", ...kFiducials.map((f) => f.column)]), lines = [];
+    const names = [...this.runs[0].decisions.columns.keys()].filter((name) => !skip.has(name));
+    const first = ["geometric_px", "frames_since_render", "depicts_frame", "resolution", "cost_polygons", "cost_pixels", "cost_chunks", "cost_bytes", "held_geometric_px", "shade_px"];
+    names.sort((a, b) => (first.indexOf(a) + 1 || 99) - (first.indexOf(b) + 1 || 99));
+    for (const name of names) {
+      const values = this.runs.map((run, k) => run.value(name, rows[k]));
+      if (values.every((value) => value === null)) continue;
+      const {unit, meaning} = this.runs[0].column(name);
+      lines.push(element("tr", {title: meaning}, element("th", {scope: "row"}, name.replaceAll("_", " "), unit && !name.endsWith("_px") ? ` ${unit}` : ""),
+                         ...values.map((v) => element("td", {class: "n", "data-column": name}, numberElement(v)))));
+    }
+    if (lines.length === 0) return "";
+    return element("table", {class: "properties"}, element("caption", {}, "What is shown, where, and at what cost"), this.head("column"), element("tbody", {}, ...lines));
+  }
+}
+
+class LayersPanel {
+  constructor(box, map) {
+    Object.assign(this, {box, map});
+  }
+  draw() {
+    const run = this.map.run, frame = selection.frame;
+    const lines = this.map.rows.slice(0, 400).map((layer) => {
+      const name = run.layers[layer], row = run.row(name, frame);
+      const swatch = element("span", {class: "swatch", "aria-hidden": "true"});
+      swatch.style.background = color(run.kind(row));
+      const link = element("a", {href: selection.link(frame, name), class: "name"}, element("bdi", {}, name));
+      return element("tr", name === selection.layer ? {"aria-current": "true"} : {},
+                     element("th", {scope: "row"}, swatch, link), element("td", {}, row < 0 ? "–" : kKindWords[run.kind(row)]),
+                     element("td", {class: "n"}, numberElement(run.value("geometric_px", row))),
+                     element("td", {class: "n"}, numberElement(run.value("cost_pixels", row))));
+    });
+    const head = element("thead", {}, element("tr", {}, ...["layer", "done", "error px", "texels"].map((w, k) => element("th", {scope: "col", class: k > 1 ? "n" : null}, w))));
+    this.box.replaceChildren(element("table", {class: "properties"}, element("caption", {}, `Layers in frame ${frame}`), head, element("tbody", {}, ...lines)));
+  }
+}

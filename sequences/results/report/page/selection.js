@@ -1,0 +1,55 @@
+// What is looked at? A layer in a frame of a run: in the address as #frame=120&layer=leader, so that a link shows it.
+
+const selection = {
+  frame: 0, layer: "", run: 0, listeners: [],
+  // `by`: who asks; all listeners are told.
+  set(change) {
+    const before = `${this.run} ${this.frame} ${this.layer}`;
+    Object.assign(this, change);
+    if (`${this.run} ${this.frame} ${this.layer}` === before) return;
+    history.replaceState(null, "", this.link());
+    this.tell();
+  },
+  tell() {
+    for (const listener of this.listeners) listener(this);
+  },
+  link(frame = this.frame, layer = this.layer) {
+    return `#frame=${frame}&layer=${encodeURIComponent(layer)}${this.run > 0 ? "&run=b" : ""}`;
+  },
+  // What the address says; nothing where it says nothing.
+  fromAddress(runs) {
+    const words = new URLSearchParams(location.hash.slice(1)), change = {};
+    const frame = Number.parseInt(words.get("frame"), 10), run = words.get("run") === "b" && runs.length > 1 ? 1 : 0;
+    if (words.has("run")) change.run = run;
+    const of = runs[change.run ?? this.run];
+    if (frame >= of.first && frame <= of.last) change.frame = frame;
+    if (of.layerAt.has(words.get("layer"))) change.layer = words.get("layer");
+    return change;
+  },
+};
+
+// An element with text: names are never read as HTML.
+function element(tag, attributes = {}, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes)) {
+    if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else if (value !== null && value !== false) made.setAttribute(name, value === true ? "" : value);
+  }
+  made.append(...children);
+  return made;
+}
+
+// What is read has four digits; the exact number is its value, and its title.
+function numberElement(value) {
+  if (value === null || value === undefined) return document.createTextNode("–");
+  if (typeof value === "string") return document.createTextNode(value);
+  const text = Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(4)));
+  return element("data", {value: String(value), title: String(value)}, text.replace("-", "−"));
+}
+
+function color(kind) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--kind-${kind}`).trim();
+}
+function css(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+}

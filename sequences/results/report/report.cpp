@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/results/report/report.h"
+
+#include <algorithm>
+
+#include "sequences/files/atomic_file.h"
+#include "sequences/files/errors.h"
+#include "sequences/files/number_text.h"
+#include "sequences/results/reason_kind.h"
+#include "sequences/results/report/page_assets.h"
+#include "sequences/results/report/page_text.h"
+#include "sequences/results/report/verdict.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Rows that a table has without JavaScript; the instrument has all of them.
+constexpr std::size_t kMostRows = 200;
+
+std::string page_name(const ReportRun& run) {
+  return run.run.value("sequence", "") + (run.run.value("kind", "") == "plan" ? " (plan)" : "");
+}
+
+std::string data_url(const Thumbnail& thumbnail) { return "data:image/png;base64," + base64(thumbnail.png); }
+
+/// The picture of that frame or of the last one before it; null: there is none.
+const Thumbnail* thumbnail_at(const ReportRun& run, int frame) {
+  const Thumbnail* best = nullptr;
+  for (const Thumbnail& thumbnail : run.thumbnails)
+    if (thumbnail.frame <= frame) best = &thumbnail;
+  return best;
+}
+
+std::string still_svg(const ReportRun& run) {
+  const Json& settings = run.run["settings"];
+  const auto size = settings.find("display_px");
+  if (size == settings.end() || !size->is_array() || size->size() != 2 || run.still.frame < 0) return {};
+  const std::string width = (*size)[0].dump(), height = (*size)[1].dump();
+  std::string svg = "<figure id=\"still\"><svg viewBox=\"0 0 " + width + " " + height +
+                    "\" role=\"img\" aria-label=\"frame " + std::to_string(run.still.frame) +
+                    " with the outlines of its sprites\">\n<rect width=\"" + width + "\" height=\"" + height +
+                    "\" class=\"display\"/>\n";
+  const Thumbnail* picture = thumbnail_at(run, run.still.frame);
+  if (picture && picture->frame == run.still.frame)
+    svg += "<image href=\"" + data_url(*picture) + "\" width=\"" + width + "\" height=\"" + height + "\"/>\n";
+  for (const SpriteOutline& outline : run.still.outlines) {
+    std::string points;
+    for (int k = 0; k < 4; ++k) points += formatted("%.2f,%.2f ", outline.x[k], outline.y[k]);
+    svg += "<polygon class=\"" + std::string(outline.age_frames > 0 ? "old" : "fresh") + "\" points=\"" +
+           points + "\"><title>" + escaped(outline.layer) + "</title></polygon>\n";
+  }
+  return svg + "</svg>\n<figcaption>Frame " + std::to_string(run.still.frame) +
+         ": solid outlines were drawn for it, dashed ones are older sprites, warped.</figcaption></figure>\n";
+}
+
+std::string layers_table(const ReportRun& run, const std::string& suffix) {
+  std::vector<const LayerCounts*> layers;
+  for (const LayerCounts& layer : run.layers) layers.push_back(&layer);
+  std::stable_sort(layers.begin(), layers.end(), [](auto* a, auto* b) { return a->pixels > b->pixels; });
+  const int frames = std::max(1, run.sums.frames);
+  std::vector<std::vector<std::string>> rows;
+  for (const LayerCounts* layer : layers) {
+    if (rows.size() == kMostRows) break;
+    const int shown = layer->renders + layer->reuses;
+    std::string why;
+    int most = 0;
+    for (const auto& [words, times] : layer->why)
+      if (times > most) why = words, most = times;
+    rows.push_back({escaped(layer->name), escaped(why), std::to_string(layer->renders),
+                    std::to_string(layer->reuses), number_element(100.0 * layer->renders / frames, 1),
+                    large(layer->polygons), large(layer->pixels),
+                    number_element(shown > 0 ? layer->sum_geometric_px / shown : 0),
+                    number_element(layer->max_geometric_px),
+                    layer->frame_of_max >= 0 ? std::to_string(layer->frame_of_max) : ""});
+  }
+  std::string caption = "Layers, the dearest first";
+  if (layers.size() > kMostRows) caption += formatted(": %zu of %zu", kMostRows, layers.size());
+  return html_table("layers" + suffix, caption,
+                    {"layer", "mostly drawn for", "renders", "reuses", "rate %", "polygons", "texels",
+                     "mean px", "max px", "in frame"},
+                    rows, 2);
+}
+
+std::string reasons_table(const ReportRun& run, const std::string& suffix) {
+  std::vector<std::vector<std::string>> rows;
+  for (const ReasonCounts& reason : run.reasons) {
+    if (rows.size() == kMostRows) break;
+    rows.push_back({escaped(reason.decision), escaped(reason.words), std::to_string(reason.times),
+                    reason.median ? number_element(*reason.median) + " " + escaped(reason.unit) : ""});
+  }
+  return html_table("reasons" + suffix, "Reasons, the most frequent first",
+                    {"decision", "reason", "times", "median value"}, rows, 2);
+}
+
+std::string worst_table(const ReportRun& run, const std::string& suffix) {
+  std::vector<std::vector<std::string>> rows;
+  for (const WorstDecision& worst : run.worst) {
+    rows.push_back({escaped(worst.layer), escaped(worst.decision), escaped(worst.reason),
+                    "<a href=\"#frame=" + std::to_string(worst.frame) + "&amp;layer=" +
+                        escaped(url_encoded(worst.layer)) + "\">" + std::to_string(worst.frame) + "</a>",
+                    number_element(worst.geometric_px, 4)});
+  }
+  return html_table("worst" + suffix, "The worst decisions: what is displayed is farthest from its place",
+                    {"layer", "decision", "reason", "frame", "error px"}, rows, 3);
+}
+
+std::string what_if_table(const ReportRun& run, const std::string& suffix) {
+  if (!run.what_if.is_object() || !run.what_if.contains("plans") || !run.what_if["plans"].is_array())
+    return {};
+  std::vector<std::vector<std::string>> rows;
+  for (const Json& plan : run.what_if["plans"]) {
+    const auto number = [&](const char* key) {
+      const auto value = plan.find(key);
+      return value != plan.end() && value->is_number() ? value->get<double>() : 0;
+    };
+    rows.push_back({formatted("%.4g px", number("geometric_px")), formatted("%.4g ×", number("factor")),
+                    number_element(100 * number("mean_update_rate"), 1), large(number("polygons_rendered")),
+                    large(number("pixels_rendered")), number_element(number("modelled_ms")),
+                    number_element(number("max_geometric_px"))});
+  }
+  return html_table("what-if" + suffix, "What would another threshold cost? Planned with the same sequence",
+                    {"threshold", "of this run's", "rate %", "polygons", "texels", "modelled ms", "max px"},
+                    rows, 1);
+}
+
+std::string run_section(const ReportRun& run, const std::string& suffix, const std::string& heading) {
+  std::string text = "<section class=\"run\" aria-label=\"" + escaped(heading) + "\">\n";
+  if (!suffix.empty()) text += "<h2>" + escaped(heading) + "</h2>\n";
+  text += "<p class=\"facts\">" + escaped(what_ran(run)) + "</p>\n<p class=\"verdict\" id=\"verdict" +
+          suffix + "\">" + escaped(verdict_on(run)) + "</p>\n";
+  if (const std::string times = measured_times(run); !times.empty())
+    text += "<p class=\"measured\">Measured with a clock, on one machine: " + escaped(times) + ".</p>\n";
+  if (!run.left_out.empty()) {
+    text += "<p class=\"note\">Not in this page for its size, but in decisions.jsonl:";
+    for (const std::string& name : run.left_out) text += " " + escaped(name);
+    text += ".</p>\n";
+  }
+  return text + "</section>\n";
+}
+
+std::string run_tables(const ReportRun& run, const std::string& suffix, const std::string& heading) {
+  const std::string title = suffix.empty() ? "" : "<h2>" + escaped(heading) + "</h2>\n";
+  return title + what_if_table(run, suffix) + layers_table(run, suffix) + reasons_table(run, suffix) +
+         worst_table(run, suffix);
+}
+
+Json page_json(PackedTable& table, const std::string& prefix, std::string& scripts) {
+  Json json = {{"rows", table.rows()}, {"columns", Json::array()}};
+  for (PackedField& field : table.fields()) {
+    Json column = {{"name", field.info.name}, {"unit", field.info.unit}, {"meaning", field.info.meaning}};
+    if (field.packed) {
+      const std::string id = prefix + "-" + field.info.name;
+      column["data"] = id;
+      scripts +=
+          "<script type=\"text/plain\" id=\"" + id + "\">" + base64(field.packed->finish()) + "</script>\n";
+    }
+    if (field.is_words) {
+      column["words"] = field.words;
+      if (field.info.name == "reason") {
+        column["numbers"] = table.reason_numbers();
+        column["kinds"] = Json::array();
+        for (const std::string& reason : field.words) {
+          std::string plain = reason;  // any number will do where one stood
+          for (std::size_t at; (at = plain.find('\x01')) != std::string::npos;) plain.replace(at, 2, "0");
+          column["kinds"].push_back(kind_of_reason(plain).words);
+        }
+      }
+    }
+    json["columns"].push_back(std::move(column));
+  }
+  return json;
+}
+
+Json page_json(ReportRun& run, const std::string& prefix, std::string& scripts) {
+  Json pictures = Json::array();
+  for (const Thumbnail& thumbnail : run.thumbnails)
+    pictures.push_back({{"frame", thumbnail.frame}, {"src", data_url(thumbnail)}});
+  Json layers = Json::array();
+  for (const LayerCounts& layer : run.layers)
+    layers.push_back(
+        {{"name", layer.name},
+         {"renders", layer.renders},
+         {"reuses", layer.reuses},
+         {"polygons", layer.polygons},
+         {"pixels", layer.pixels},
+         {"mean_px",
+          layer.renders + layer.reuses > 0 ? layer.sum_geometric_px / (layer.renders + layer.reuses) : 0},
+         {"max_px", layer.max_geometric_px}});
+  return {{"name", page_name(run)},
+          {"folder", run.folder},
+          {"what", what_ran(run)},
+          {"complete", run.is_complete},
+          {"run", run.run},
+          {"layers", std::move(layers)},
+          {"worst", run.worst.empty() ? Json(nullptr)
+                                      : Json{{"frame", run.worst[0].frame}, {"layer", run.worst[0].layer}}},
+          {"still", run.still.frame},
+          {"pictures", std::move(pictures)},
+          {"decisions", page_json(run.decisions, prefix + "d", scripts)},
+          {"frames", page_json(run.frames, prefix + "f", scripts)},
+          {"timing", page_json(run.timing, prefix + "t", scripts)}};
+}
+
+}  // namespace
+
+std::string report_html(std::vector<ReportRun>& runs) {
+  if (!has_report()) throw OutputError("this build has no report, rule: TALISMAN_REPORT=ON");
+  std::string title, head, tables, scripts;
+  Json data = {{"schema", "talisman.report/1"}, {"runs", Json::array()}};
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const std::string suffix = runs.size() > 1 ? std::string("-") + static_cast<char>('a' + k) : "";
+    const std::string heading = runs.size() > 1
+                                    ? std::string(1, static_cast<char>('A' + k)) + ": " + runs[k].folder
+                                    : page_name(runs[k]);
+    title += (k > 0 ? " | " : "") + page_name(runs[k]);
+    head += run_section(runs[k], suffix, heading);
+    tables += run_tables(runs[k], suffix, heading);
+    data["runs"].push_back(page_json(runs[k], std::string(1, static_cast<char>('a' + k)), scripts));
+  }
+  const auto asset = [](const char* name) { return std::string(page_asset(name)); };
+  return filled(page_asset("page.html"), {{"title", escaped(title)},
+                                          {"css", asset("page.css") + asset("dygraph.css")},
+                                          {"head", head},
+                                          {"still", runs.empty() ? "" : still_svg(runs[0])},
+                                          {"tables", tables},
+                                          {"data", json_in_script(data)},
+                                          {"columns", scripts},
+                                          {"library", asset("dygraph.js")},
+                                          {"script", asset("page.js")}});
+}
+
+std::string write_report(const std::vector<std::string>& folders, const std::string& file, bool thumbnails) {
+  if (!has_report()) throw OutputError("this build has no report, rule: TALISMAN_REPORT=ON");
+  std::vector<ReportRun> runs;
+  for (const std::string& folder : folders) runs.push_back(read_report_run(folder, thumbnails));
+  const std::string path = file.empty() ? folders.front() + "/report.html" : file;
+  write_text_atomically(path, report_html(runs));
+  return path;
+}
+
+}  // namespace talisman::sequences

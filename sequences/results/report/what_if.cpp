@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "sequences/results/report/what_if.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "sequences/files/atomic_file.h"
+
+namespace talisman::sequences {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json what_if_plan(double factor, double geometric_px, const Summary& summary) {
+  double ms = 0, max_px = 0;
+  for (const FrameLine& line : summary.frames) ms += line.modelled_ms;
+  for (const LayerSummary& layer : summary.layers) max_px = std::max(max_px, layer.max_geometric_px);
+  const auto frames = static_cast<double>(std::max<std::size_t>(1, summary.frames.size()));
+  return {{"factor", factor},
+          {"geometric_px", geometric_px},
+          {"mean_update_rate", summary.mean_update_rate()},
+          {"polygons_rendered", summary.polygons_rendered()},
+          {"pixels_rendered", summary.pixels_rendered()},
+          {"modelled_ms", ms / frames},
+          {"max_geometric_px", max_px}};
+}
+
+}  // namespace
+
+bool has_threshold(const Settings& settings) {
+  const regulator::Policy policy = settings.regulator.policy;
+  return (policy == regulator::Policy::Threshold || policy == regulator::Policy::Lookahead) &&
+         settings.regulator.thresholds.geometric_px > 0;
+}
+
+void write_what_if(const Sequence& sequence, const Settings& settings, const FrameRange& range,
+                   const std::string& folder) {
+  const double threshold_px = settings.regulator.thresholds.geometric_px;
+  Json plans = Json::array();
+  for (const double factor : {0.5, 1.0, 2.0}) {
+    Settings other = settings;
+    other.regulator.thresholds.geometric_px = factor * threshold_px;
+    plans.push_back(what_if_plan(factor, factor * threshold_px, planned(sequence, other, range)));
+  }
+  const Json json = {{"schema", "talisman.what_if/1"}, {"plans", std::move(plans)}};
+  write_text_atomically(folder + "/what-if.json", json.dump(2) + "\n");
+}
+
+}  // namespace talisman::sequences

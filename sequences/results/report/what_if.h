@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What would half the threshold cost, and twice? The same run planned again with both (no pixel, no file of its own):
+/// what-if.json, `talisman.what_if/1`, which the report shows.
+
+#include "sequences/content/sequence.h"
+#include "sequences/results/planned.h"
+
+namespace talisman::sequences {
+
+/// Does the policy look at a threshold?
+bool has_threshold(const Settings& settings);
+
+/// Writes DIR/what-if.json: the plans at ½, 1 and 2 times `geometric_px`.
+void write_what_if(const Sequence& sequence, const Settings& settings, const FrameRange& range,
+                   const std::string& folder);
+
+}  // namespace talisman::sequences
