@@ -15,6 +15,7 @@
 #include "sequences/commands/split.h"
 #include "sequences/commands/version.h"
 #include "sequences/commands/words.h"
+#include "sequences/results/report/page_assets.h"
 
 namespace talisman::sequences {
 namespace {
@@ -68,6 +69,13 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   app_.name("talisman");
   app_.require_subcommand(1);
   app_.set_version_flag("--version", version_text, "version, commit, effects built, instruction set");
+  app_.add_flag_callback(
+      "--licenses",
+      [] {
+        std::cout << "dygraphs, which draws the curves of reports:\n\n" << page_asset("dygraph.licence");
+        throw CLI::Success();
+      },
+      "licences of what others wrote and this tool holds");
   add_runs(stop);
   add_explain();
   add_tune(stop);

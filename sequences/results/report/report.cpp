@@ -118,12 +118,13 @@ std::string what_if_table(const ReportRun& run, const std::string& suffix) {
     };
     rows.push_back({formatted("%.4g px", number("geometric_px")), formatted("%.4g ×", number("factor")),
                     number_element(100 * number("mean_update_rate"), 1), large(number("polygons_rendered")),
-                    large(number("pixels_rendered")), number_element(number("modelled_ms")),
+                    large(number("pixels_rendered")), number_element(number("modelled_drawing_ms")),
                     number_element(number("max_geometric_px"))});
   }
-  return html_table("what-if" + suffix, "What would another threshold cost? Planned with the same sequence",
-                    {"threshold", "of this run's", "rate %", "polygons", "texels", "modelled ms", "max px"},
-                    rows, 1);
+  return html_table(
+      "what-if" + suffix, "What would another threshold cost? Planned with the same sequence",
+      {"threshold", "of this run's", "rate %", "polygons", "texels", "modelled drawing ms", "max px"}, rows,
+      1);
 }
 
 std::string run_section(const ReportRun& run, const std::string& suffix, const std::string& heading) {

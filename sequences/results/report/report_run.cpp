@@ -46,9 +46,9 @@ std::string file_of_lines(const std::string& folder, const std::string& name) {
 }
 
 /// The lines of `schema`; the last one may be cut off. Others go to `other`.
-void for_each_line_of(const std::string& file, const std::vector<ColumnInfo>& columns, const std::string& schema,
-                   const std::function<void(const std::vector<Cell>&)>& take,
-                   const std::function<void(const std::string&)>& other = {}) {
+void for_each_line_of(const std::string& file, const std::vector<ColumnInfo>& columns,
+                      const std::string& schema, const std::function<void(const std::vector<Cell>&)>& take,
+                      const std::function<void(const std::string&)>& other = {}) {
   std::ifstream in(file, std::ios::binary);
   FlatLine line(columns);
   int number = 0;
@@ -87,7 +87,8 @@ class DecisionTally {
 
   void add(const std::vector<Cell>& row) {
     const PackedTable& table = run_.decisions;
-    const std::string name = cell_word(table.cell(row, "layer")), decision = cell_word(table.cell(row, "decision"));
+    const std::string name = cell_word(table.cell(row, "layer")),
+                      decision = cell_word(table.cell(row, "decision"));
     const std::string reason = cell_word(table.cell(row, "reason"));
     const int frame = static_cast<int>(cell_or_0(table.cell(row, "frame")));
     const double geometric_px = cell_or_0(table.cell(row, "geometric_px"));
@@ -216,6 +217,7 @@ void add_to_sums(FrameSums& sums, const PackedTable& table, const std::vector<Ce
   sums.pixels += cell_or_0(at("pixels_rendered"));
   sums.pixels_reference += cell_or_0(at("pixels_reference"));
   sums.modelled_ms += cell_or_0(at("modelled_ms"));
+  sums.modelled_drawing_ms += cell_or_0(at("modelled_drawing_ms"));
   if (const double flip = cell_number(at("quality_total_flip"));
       !std::isnan(flip) && (!sums.largest_flip || flip > *sums.largest_flip)) {
     sums.largest_flip = flip;

@@ -43,7 +43,9 @@ struct WorstDecision {
 /// Sums over frames.jsonl.
 struct FrameSums {
   int frames = 0, first = -1, last = -1;
-  double polygons = 0, polygons_reference = 0, pixels = 0, pixels_reference = 0, modelled_ms = 0;
+  double polygons = 0, polygons_reference = 0, pixels = 0, pixels_reference = 0;
+  double modelled_ms = 0;                                  ///< of a render
+  double modelled_drawing_ms = 0;                          ///< of it the drawing, as planned
   std::optional<double> largest_flip{}, lowest_psnr_db{};  ///< displayed against `direct`; with --quality
   int frame_of_flip = -1;
 };

@@ -40,6 +40,13 @@ std::string picture_error(const ReportRun& run) {
   return text + (marked.empty() ? "; the audit marks no layer" : "; the audit marks " + marked);
 }
 
+/// A plan knows what drawing takes, and no more.
+std::string modelled_time(const ReportRun& run) {
+  const bool is_plan = run.run.value("kind", "") == "plan";
+  const double ms = is_plan ? run.sums.modelled_drawing_ms : run.sums.modelled_ms;
+  return formatted("%.3g ms modelled a frame", ms / run.sums.frames) + (is_plan ? " for drawing" : "");
+}
+
 }  // namespace
 
 std::string what_ran(const ReportRun& run) {
@@ -65,7 +72,7 @@ std::string verdict_on(const ReportRun& run) {
   std::string text = run.run.value("kind", "") == "plan" ? "Would draw " : "Drew ";
   text += drawn_of(sums.polygons, sums.polygons_reference, "polygons") + " and " +
           drawn_of(sums.pixels, sums.pixels_reference, "texels") + " of what reference draws, " +
-          formatted("%.3g ms modelled a frame", sums.modelled_ms / sums.frames);
+          modelled_time(run);
   const WorstDecision* worst = run.worst.empty() ? nullptr : run.worst.data();
   text += worst ? formatted("; largest error of a fiducial %.4g px", worst->geometric_px) + " (" +
                       worst->layer + ", frame " + std::to_string(worst->frame) + ")"

@@ -15,7 +15,7 @@ using Json = nlohmann::ordered_json;
 
 Json what_if_plan(double factor, double geometric_px, const Summary& summary) {
   double ms = 0, max_px = 0;
-  for (const FrameLine& line : summary.frames) ms += line.modelled_ms;
+  for (const FrameLine& line : summary.frames) ms += line.modelled_drawing_ms;
   for (const LayerSummary& layer : summary.layers) max_px = std::max(max_px, layer.max_geometric_px);
   const auto frames = static_cast<double>(std::max<std::size_t>(1, summary.frames.size()));
   return {{"factor", factor},
@@ -23,7 +23,7 @@ Json what_if_plan(double factor, double geometric_px, const Summary& summary) {
           {"mean_update_rate", summary.mean_update_rate()},
           {"polygons_rendered", summary.polygons_rendered()},
           {"pixels_rendered", summary.pixels_rendered()},
-          {"modelled_ms", ms / frames},
+          {"modelled_drawing_ms", ms / frames},
           {"max_geometric_px", max_px}};
 }
 

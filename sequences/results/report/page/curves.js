@@ -23,7 +23,7 @@ function curveRows(run, key) {
   const {columns, timing} = kCurves[key], table = timing ? run.timing : run.frames;
   const frames = table.columns.get("frame").values || [], rows = new Map();
   for (let r = 0; r < frames.length; ++r)
-    rows.set(frames[r], columns.map((name) => (name === "max" ? run.maxError[frames[r] - run.first] : table.value(name, r))));
+    rows.set(frames[r], columns.map((name) => (name === "modelled_ms" && run.run.kind === "plan" ? null : name === "max" ? run.maxError[frames[r] - run.first] : table.value(name, r))));
   if (key === "error")
     for (let f = run.first; f <= run.last; ++f) if (!rows.has(f)) rows.set(f, [run.maxError[f - run.first], null]);
   const sorted = [...rows.entries()].sort((a, b) => a[0] - b[0]).map(([frame, values]) => [frame, ...values.map((v) => (Number.isNaN(v) ? null : v))]);
