@@ -21,7 +21,7 @@ TEST(Choice, UnknownWordsAreRefusedWithTheKnownOnes) {
   EXPECT_EQ(tests::message_of([] { choice("--bound", "ball", kBoundWords); }),
             "--bound is 'ball', must be one of box8, dop14, dop26");
   EXPECT_EQ(tests::message_of([] { choice("--format", "", kFormatWords); }),
-            "--format is '', must be one of png, exr, none");
+            "--format is '', must be one of png, exr, exr-layers, none");
 }
 
 TEST(Alternatives, TheLastIsJoinedByOr) {
