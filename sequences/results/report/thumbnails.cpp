@@ -6,6 +6,7 @@
 #include <map>
 
 #include "sequences/files/errors.h"
+#include "sequences/files/png_frame.h"
 
 namespace talisman::sequences {
 
@@ -28,7 +29,7 @@ std::map<int, std::string> files_of_frames(const std::string& folder) {
 
 std::vector<Thumbnail> thumbnail_from(int frame, const std::string& file) {
   try {
-    const Image8 image = read_image(file);
+    const Image8 image = file.ends_with(".png") ? read_png_frame(file) : read_image(file);
     const Image8 small = shrunk(image, std::min(image.width, kThumbnailWidth_px));
     const EncodedPicture encoded = encoded_png(small);
     if (!encoded.error.empty()) return {};
