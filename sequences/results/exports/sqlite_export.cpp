@@ -93,7 +93,8 @@ std::string sql_table(const FinishedTable& table) {
 }  // namespace
 
 std::string export_sqlite(const std::string& folder, bool with_timing) {
-  const std::string name = "results.sqlite", target = folder + "/" + name;
+  std::string name = "results.sqlite";
+  const std::string target = folder + "/" + name;
   const std::vector<FinishedTable> tables = finished_tables(folder, with_timing);
   write_atomically(target, [&](const std::string& temporary) {
     Database database(temporary, target);

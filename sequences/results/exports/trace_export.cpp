@@ -236,7 +236,8 @@ void write_trace(TraceFile& trace, const std::vector<FinishedTable>& tables, con
 }  // namespace
 
 std::string export_trace(const std::string& folder, bool with_timing) try {
-  const std::string name = "trace.json", target = folder + "/" + name;
+  std::string name = "trace.json";
+  const std::string target = folder + "/" + name;
   const std::vector<FinishedTable> tables = finished_tables(folder, with_timing);
   const Json run = finished_run(folder);
   const double fps = run.at("settings").at("fps").get<double>();

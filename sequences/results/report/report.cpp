@@ -237,7 +237,7 @@ std::string write_report(const std::vector<std::string>& folders, const std::str
   if (!has_report()) throw OutputError("this build has no report, rule: TALISMAN_REPORT=ON");
   std::vector<ReportRun> runs;
   for (const std::string& folder : folders) runs.push_back(read_report_run(folder, thumbnails));
-  const std::string path = file.empty() ? folders.front() + "/report.html" : file;
+  std::string path = file.empty() ? folders.front() + "/report.html" : file;
   write_text_atomically(path, report_html(runs));
   return path;
 }

@@ -136,7 +136,7 @@ class DecisionTally {
     values.insert(values.end(), kind.values.begin(), kind.values.end());
   }
 
-  void add_worst(WorstDecision decision) {
+  void add_worst(const WorstDecision& decision) {
     const auto is_worse = [](const WorstDecision& a, const WorstDecision& b) {
       return a.geometric_px > b.geometric_px;
     };
