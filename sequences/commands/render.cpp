@@ -66,7 +66,8 @@ void write_page(const Sequence& sequence, const ResolvedRun& run, const RunOutco
   if (line.no_report || line.audit_alone || !has_report()) return;
   const RunOptions& options = run.options;
   if (outcome.complete && !options.plan_only && has_threshold(run.settings))
-    write_what_if(sequence, run.settings, {options.first_frame, options.last_frame}, options.out);
+    write_what_if(sequence, run.settings, {options.first_frame, options.last_frame}, outcome.summary,
+                  options.out);
   write_report({options.out}, {}, !line.no_thumbnails);
 }
 

@@ -36,15 +36,15 @@ bool has_threshold(const Settings& settings) {
 }
 
 void write_what_if(const Sequence& sequence, const Settings& settings, const FrameRange& range,
-                   const std::string& folder) {
+                   const Summary& now, const std::string& folder) {
   const double threshold_px = settings.regulator.thresholds.geometric_px;
-  Json plans = Json::array();
-  for (const double factor : {0.5, 1.0, 2.0}) {
+  const auto plan = [&](double factor) {
     Settings other = settings;
     other.regulator.thresholds.geometric_px = factor * threshold_px;
-    plans.push_back(what_if_plan(factor, factor * threshold_px, planned(sequence, other, range)));
-  }
-  const Json json = {{"schema", "talisman.what_if/1"}, {"plans", std::move(plans)}};
+    return what_if_plan(factor, factor * threshold_px, planned(sequence, other, range));
+  };
+  const Json json = {{"schema", "talisman.what_if/1"},
+                     {"plans", {plan(0.5), what_if_plan(1, threshold_px, now), plan(2)}}};
   write_text_atomically(folder + "/what-if.json", json.dump(2) + "\n");
 }
 

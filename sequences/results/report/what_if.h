@@ -12,8 +12,8 @@ namespace talisman::sequences {
 /// Does the policy look at a threshold?
 bool has_threshold(const Settings& settings);
 
-/// Writes DIR/what-if.json: the plans at ½, 1 and 2 times `geometric_px`.
+/// Writes DIR/what-if.json: plans at ½ and 2 times `geometric_px`, and between them `now`, the run itself over `range`.
 void write_what_if(const Sequence& sequence, const Settings& settings, const FrameRange& range,
-                   const std::string& folder);
+                   const Summary& now, const std::string& folder);
 
 }  // namespace talisman::sequences

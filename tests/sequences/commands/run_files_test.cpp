@@ -130,6 +130,28 @@ TEST_F(RunFiles, LeftByAKilledRunGoAndOthersStay) {
                                    "summary.json", "timing.jsonl", "what-if.json"}));
 }
 
+/// What a user gets who plans with those thresholds.
+TEST_F(RunFiles, WhatIfIsWhatPlansWithTheOtherThresholdsSay) {
+  const std::string options =
+      "carousel --frames 0-14 --size 160x120 --progress none --no-report --geometric-px ";
+  ASSERT_EQ(
+      run("render carousel --frames 0-14 --size 160x120 --progress none --geometric-px 1 --out o").exit_code,
+      0);
+  const auto what_if = nlohmann::json::parse(read("o/what-if.json")).at("plans");
+  ASSERT_EQ(what_if.size(), 3u);
+  const char* thresholds[] = {"0.5", "1", "2"};
+  std::set<std::int64_t> polygons;
+  for (std::size_t k = 0; k < 3; ++k) {
+    ASSERT_EQ(run("plan " + options + thresholds[k] + " --out p").exit_code, 0);
+    const auto summary = nlohmann::json::parse(read("p/summary.json"));
+    for (const char* key :
+         {"mean_update_rate", "polygons_rendered", "pixels_rendered", "modelled_drawing_ms"})
+      EXPECT_EQ(what_if[k].at(key), summary.at(key)) << key << " at " << thresholds[k] << " px";
+    polygons.insert(summary.at("polygons_rendered").get<std::int64_t>());
+  }
+  EXPECT_EQ(polygons.size(), 3u) << "the thresholds make no difference here";
+}
+
 TEST_F(RunFiles, OfAnotherRunAreNotContinued) {
   const std::string options = "render passing.yaml --frames 0-3 --size 64x48 --progress none --out o";
   ASSERT_EQ(run(options + " --photometric 0.1").exit_code, 0);
