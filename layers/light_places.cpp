@@ -15,6 +15,8 @@ namespace {
 
 constexpr double kEdgeOnShare = 1e-12;  ///< of the edges' product: a triangle without area, or seen edge-on
 constexpr double kEdgeSlack = 1e-9;     ///< a ray through an edge hits both triangles
+constexpr double kSamePlane = 1e-9;     ///< of a triangle's sides
+constexpr double kNearFace = 1e-8;      ///< of the triangle's sides, and of the way from the eye
 
 /// Two unit vectors across `axis`, which has unit length.
 std::array<dvec3, 2> across(const dvec3& axis) {
@@ -22,29 +24,55 @@ std::array<dvec3, 2> across(const dvec3& axis) {
   return {u, cross(axis, u)};
 }
 
+/// Cosines and sines around the ring.
+const std::array<dvec2, kRing>& ring() {
+  static const std::array<dvec2, kRing> kTurns = [] {
+    std::array<dvec2, kRing> turns;
+    for (int k = 0; k < kRing; ++k) {
+      const double turn = 2 * std::numbers::pi * k / kRing;
+      turns[k] = {std::cos(turn), std::sin(turn)};
+    }
+    return turns;
+  }();
+  return kTurns;
+}
+
 /// Calls visit(unit vector) for the ring at an angle about the axis.
 template <typename Visit>
 void for_each_on_cone(const dvec3& axis, double cosine, const Visit& visit) {
   const auto [u, v] = across(axis);
   const double sine = std::sqrt(std::max(0.0, 1 - cosine * cosine));
-  for (int k = 0; k < kRing; ++k) {
-    const double turn = 2 * std::numbers::pi * k / kRing;
-    visit(cosine * axis + sine * (std::cos(turn) * u + std::sin(turn) * v));
-  }
+  for (const dvec2& turn : ring()) visit(cosine * axis + sine * (turn.x * u + turn.y * v));
 }
 
-/// One face of the body, as a plane that is bounded by a triangle.
+/// One face of the body: a plane, and the triangles on it.
 struct HullFace {
   dvec3 a, ab, ac, normal;
   bool is_flat = false;  ///< it has no area
+  std::span<const std::array<int, 3>> triangles;
 
+  /// Of the triangle `first` and those that follow it in its plane.
+  HullFace(const BodySurface& body, std::size_t first) : HullFace(body, body.triangles[first]) {
+    std::size_t end = first + 1;
+    while (end < body.triangles.size() && (is_flat || is_in_plane(body, body.triangles[end]))) ++end;
+    triangles = body.triangles.subspan(first, is_flat ? 1 : end - first);
+  }
+  double height(const dvec3& p) const { return dot(normal, p - a); }
+
+ private:
   HullFace(const BodySurface& body, const std::array<int, 3>& t)
       : a(body.points[t[0]]), ab(body.points[t[1]] - a), ac(body.points[t[2]] - a), normal(cross(ab, ac)) {
     const double area = glm::length(normal);
     is_flat = !(area > kEdgeOnShare * glm::length(ab) * glm::length(ac)) || !std::isfinite(area);
     if (!is_flat) normal /= area;
   }
-  double height(const dvec3& p) const { return dot(normal, p - a); }
+  /// Opposite faces may follow each other, too.
+  bool is_in_plane(const BodySurface& body, const std::array<int, 3>& t) const {
+    const double size = glm::length(ab) + glm::length(ac);
+    return std::all_of(t.begin(), t.end(), [&](int corner) {
+      return std::fabs(height(body.points[corner])) <= kSamePlane * size;
+    });
+  }
 };
 
 /// The first crossing of the body by the ray, by Möller & Trumbore 1997. Its distance, or infinity.
@@ -98,11 +126,23 @@ void add_foot(const LightState& light, const HullFace& face, const BodySurface& 
                    [&](const dvec3& way) { add_ray(body, light.position, way, places); });
 }
 
-/// What the eye sees in this direction, if it is on the plane of the face.
+/// Is a place on the plane of the face in one of its triangles, or as near as rounding can bring it there? `far` is
+/// the distance from which it was found.
+bool is_in_face(const BodySurface& body, const HullFace& face, const dvec3& place, double far) {
+  return std::any_of(face.triangles.begin(), face.triangles.end(), [&](const std::array<int, 3>& t) {
+    const dvec3 a = body.points[t[0]], ab = body.points[t[1]] - a, ac = body.points[t[2]] - a, ap = place - a;
+    const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
+    const double area2 = bb * cc - bc * bc, slack = kNearFace * (1 + far / std::sqrt(std::min(bb, cc)));
+    const double u = cc * pb - bc * pc, v = bb * pc - bc * pb;
+    return u >= -slack * area2 && v >= -slack * area2 && u + v <= (1 + 2 * slack) * area2;
+  });
+}
+
+/// What the eye sees in this direction, if it is on the face.
 void add_seen(const dvec3& eye, const dvec3& target, const HullFace& face, const BodySurface& body,
               std::vector<SurfacePlace>& places) {
   const double distance = glm::distance(eye, target);
-  if (!(distance > 0)) return;
+  if (!(distance > 0) || !is_in_face(body, face, target, distance)) return;
   SurfacePlace place;
   const double depth = first_crossing(body, eye, (target - eye) / distance, place);
   if (std::fabs(depth - distance) <= 1e-6 * distance && std::fabs(dot(place.normal, face.normal)) > 0.999)
@@ -141,12 +181,10 @@ void append_light_places(const LightState& light, const dvec3& eye, const MeanSu
   if (light.kind == Light::Kind::Spot) add_cone(light, body, places);
   const bool has_feet = light.kind == Light::Kind::Point;
   if (!has_feet && !surface.has_specular()) return;
-  dvec3 last_normal(0.0);
-  for (const auto& triangle : body.triangles) {
-    const HullFace face(body, triangle);
-    // The triangles of a face follow each other.
-    if (face.is_flat || std::fabs(dot(face.normal, last_normal)) > 1 - 1e-12) continue;
-    last_normal = face.normal;
+  for (std::size_t first = 0; first < body.triangles.size();) {
+    const HullFace face(body, first);
+    first += face.triangles.size();
+    if (face.is_flat) continue;
     if (has_feet) add_foot(light, face, body, places);
     if (surface.has_specular()) add_highlight(light, eye, surface.shininess, face, body, places);
   }

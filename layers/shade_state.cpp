@@ -62,6 +62,39 @@ bool is_highlight(const Layer& layer) {
   return is_built(Effect::SpecularLayer) && layer.kind == LayerKind::Specular;
 }
 
+/// What has stayed as it is in another frame that is known. Aggregates are not looked up: one of the same number may
+/// have had other members.
+class Rest {
+ public:
+  Rest(const SceneFrame& frame, const LayerSet& set, std::span<const LayerState> states,
+       const KnownInfluences& known)
+      : known_(known), layers_(states.size(), 0), lights_(frame.lights.size(), 0) {
+    for (std::size_t i = 0; i < std::min(known.states.size(), states.size()); ++i)
+      layers_[i] = !set.layers[i].is_aggregate() && is_same_body(known.states[i], states[i]);
+    for (std::size_t i = 0; i < std::min(known.lights.size(), frame.lights.size()); ++i)
+      lights_[i] = known.lights[i] == frame.lights[i];
+  }
+
+  /// The shadow that would be the trace number `index` of the receiver, if all that makes it rests; else null.
+  const ShadeTrace* shadow(int receiver, int light, int caster, std::size_t index) const {
+    if (!layers_[receiver] || !layers_[caster] || !lights_[light]) return nullptr;
+    const std::vector<ShadeTrace>& traces = known_.states[receiver].traces;
+    if (index >= traces.size()) return nullptr;
+    const ShadeTrace& trace = traces[index];
+    const bool is_it =
+        trace.kind == ShadeTrace::Kind::Shadow && trace.light == light && trace.source == caster;
+    return is_it ? &trace : nullptr;
+  }
+
+ private:
+  static bool is_same_body(const LayerState& a, const LayerState& b) {
+    return a.layer == b.layer && a.world_points == b.world_points && a.world_from_part == b.world_from_part;
+  }
+
+  const KnownInfluences& known_;
+  std::vector<char> layers_, lights_;  ///< by id
+};
+
 /// One receiver at one instant.
 class Receiver {
  public:
@@ -88,7 +121,7 @@ class Receiver {
 
   const dmat4& world_from_receiver() const { return world_from_receiver_; }
 
-  std::vector<ShadeTrace> traces() const {
+  std::vector<ShadeTrace> traces(const Rest& rest) const {
     std::vector<ShadeTrace> traces;
     if (own_.world_points.empty() || !exists(receiver_from_world_ * dvec4(center_, 1))) return traces;
     const Scene& scene = *frame_.scene;
@@ -96,7 +129,13 @@ class Receiver {
       const int light = static_cast<int>(i);
       if (looks_up_shadows(layer_) && layer_.holds.shadows && scene.lights[i].casts_shadow &&
           (layer_.light < 0 || layer_.light == light))
-        for (const int caster : layer_.casters) add(traces, shadow(light, caster));
+        for (const int caster : layer_.casters) {
+          const ShadeTrace* known = rest.shadow(layer_.id, light, caster, traces.size());
+          if (known)
+            traces.push_back(*known);
+          else
+            add(traces, shadow(light, caster));
+        }
       if (is_highlight(layer_) && scene.lights[i].kind != Light::Kind::Ambient) add(traces, highlight(light));
     }
     if (mirrors(layer_) && plane_)
@@ -315,9 +354,11 @@ void add_mirrored_pictures(const SceneFrame& frame, const LayerSet& set, const L
     }
 }
 
-std::vector<dmat4> influence_matrices(const SceneFrame& frame, const LayerSet& set, const Layer& layer) {
+/// `casters`: the matrices of all that casts.
+std::vector<dmat4> influence_matrices(const SceneFrame& frame, const LayerSet& set, const Layer& layer,
+                                      const std::vector<dmat4>& casters) {
   std::vector<dmat4> matrices;
-  if (looks_up_shadows(layer)) matrices = part_matrices(frame, set.casting_parts);
+  if (looks_up_shadows(layer)) matrices = casters;
   if (blends_textures(set, layer)) append_blends(frame, set, layer, matrices);
   if (!is_built(Effect::ReflectionMap)) return matrices;
   for (const int id : layer.reflected) {
@@ -335,7 +376,11 @@ LayerState shade_state(const LayerState& base, const Layer& shade) {
   return state;
 }
 
-void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<LayerState> states) {
+void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<LayerState> states,
+                        const KnownInfluences& known) {
+  std::vector<dmat4> casters;
+  if (is_built(Effect::ShadowMap)) casters = part_matrices(frame, set.casting_parts);
+  const Rest rest(frame, set, states, known);
   for (const Layer& layer : set.layers) {
     LayerState& state = states[layer.id];
     if (state.layer != layer.id) continue;  // an aggregate that does not exist now
@@ -345,10 +390,10 @@ void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<
     if (!looks_up_shadows(layer) && layer.reflected.empty() && !is_highlight(layer) &&
         !blends_textures(set, layer))
       continue;
-    state.world_from_influence = influence_matrices(frame, set, layer);
+    state.world_from_influence = influence_matrices(frame, set, layer, casters);
     const Receiver receiver(frame, set, states, layer);
     state.world_from_receiver = receiver.world_from_receiver();
-    state.traces = receiver.traces();
+    state.traces = receiver.traces(rest);
   }
 }
 

@@ -34,10 +34,18 @@ namespace talisman::layers {
 /// The state of a shade layer from that of its base: the same surface, seen by the same camera.
 LayerState shade_state(const LayerState& base, const Layer& shade);
 
+/// What another frame of the same set has captured: by light, and by layer id.
+struct KnownInfluences {
+  std::span<const LightState> lights;
+  std::span<const LayerState> states;
+};
+
 /// Fills world_from_influence, world_from_receiver and traces of those states whose layers hold a term that
 /// needs them, from the characteristic points of all layers. `states` by layer id. A shadow layer keeps all
 /// lights of its base: its alpha is the share that one light has in all of them. Nothing is done or allocated
-/// for other layers. Cost: O(traced points).
-void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<LayerState> states);
+/// for other layers. A shadow whose light, caster and receiver are where they were in `known` is taken from there: it is
+/// the same to the last bit. Cost: O(traced points), of shadows of what moved.
+void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<LayerState> states,
+                        const KnownInfluences& known = {});
 
 }  // namespace talisman::layers

@@ -30,6 +30,8 @@ constexpr double kWorn = 1.3;
 /// Above the rounding of a support, relative to the largest coordinate.
 constexpr double kRoundingOfPlanes = 1e-14;
 constexpr double kLargest = 1e60;
+/// Where the eye takes no part in an answer it may go as far as its reach leaves the rounding what it is.
+constexpr double kWhereverTheEye = 1e10;
 
 /// What one pass over the points of a body finds.
 struct Pass {
@@ -57,19 +59,22 @@ Pass pass_over(std::span<const dvec3> points, std::span<const dvec3> before) {
 }
 
 struct SeparatingPlane {
-  double h = HUGE_VAL;
+  double bodies = HUGE_VAL, eye = HUGE_VAL;  ///< by how much the one, or the eye, is not beyond it
   dvec3 normal{0, 0, 0};
+  double h() const { return std::max(bodies, eye); }
 };
 
 /// The best plane across an axis between a and conv({e} ∪ b).
 SeparatingPlane axis_plane(const WorldBounds& a, const WorldBounds& b, const dvec3& eye) {
   SeparatingPlane best;
-  for (int k = 0; k < 3; ++k) {
-    const double up = a.hi[k] - std::min(b.lo[k], eye[k]), down = std::max(b.hi[k], eye[k]) - a.lo[k];
-    if (std::min(up, down) >= best.h) continue;
-    best = {std::min(up, down), {0, 0, 0}};
-    best.normal[k] = up <= down ? 1 : -1;
-  }
+  for (int k = 0; k < 3; ++k)
+    for (const double side : {1.0, -1.0}) {
+      const double low = side > 0 ? a.hi[k] : -a.lo[k], high = side > 0 ? b.lo[k] : -b.hi[k];
+      SeparatingPlane plane{low - high, low - side * eye[k], {0, 0, 0}};
+      if (plane.h() >= best.h()) continue;
+      plane.normal[k] = side;
+      best = plane;
+    }
   return best;
 }
 
@@ -77,6 +82,10 @@ double largest_along(const dvec3& n, std::span<const dvec3> points) {
   double most = -HUGE_VAL;
   for (const dvec3& p : points) most = std::max(most, p.x * n.x + p.y * n.y + p.z * n.z);
   return most;
+}
+
+bool uses_apex(const Enclosure& enclosure) {
+  return std::find(enclosure.c.begin(), enclosure.c.end(), Enclosure::kApex) != enclosure.c.end();
 }
 
 void erase_value(std::vector<int>& values, int value) {
@@ -213,7 +222,8 @@ void OcclusionRelations::add_pair(int first, int second) {
   }
   const int pair = free_pairs_.back();
   free_pairs_.pop_back();
-  pairs_[pair] = Pair{first, second};
+  pairs_[pair] = Pair{};
+  pairs_[pair].first = first, pairs_[pair].second = second;
   witnesses_[pair] = Witnesses{};
   bodies_[first].pairs.push_back(pair);
   bodies_[second].pairs.push_back(pair);
@@ -238,7 +248,7 @@ void OcclusionRelations::look_up(int body, VisibilityCounters& counters) {
     else
       mark_[other] = mark_count_;
     if (!b.placed_anew || pairs_[pair].first < 0) continue;
-    pairs_[pair].term = -1;
+    pairs_[pair].term = {};
     witnesses_[pair] = Witnesses{};
   }
   if (widened_[body].empty()) return;
@@ -250,6 +260,12 @@ void OcclusionRelations::look_up(int body, VisibilityCounters& counters) {
       add_pair(body, other);
 }
 
+OcclusionRelations::Slack OcclusionRelations::slack_of(const dvec3& plane, const Body& front,
+                                                       const Body& behind, double tolerance) const {
+  const double room = tolerance - largest_along(plane, front.points);
+  return {room - largest_along(-plane, behind.points), room + glm::dot(plane, eye_)};
+}
+
 OcclusionRelations::Answer OcclusionRelations::occludes(const Body& front, const Body& behind,
                                                         Witness& witness, VisibilityCounters& counters,
                                                         bool& exact) const {
@@ -257,49 +273,56 @@ OcclusionRelations::Answer OcclusionRelations::occludes(const Body& front, const
   const double smaller = std::min(front.size, behind.size);
   const double rounding = kRoundingOfPlanes * std::max({front.reach, behind.reach, eye_reach});
   const double t = touch_ * smaller + rounding;
-  const double steps = front.step + behind.step + eye_step_;
-  const double axis_slack = t - axis_plane(front.bounds, behind.bounds, eye_).h;
-  if (axis_slack >= std::max(kFramesAhead * steps, kFirstSlack * smaller)) return {false, axis_slack};
+  const double own_steps = front.step + behind.step, steps = own_steps + eye_step_;
+  const SeparatingPlane axis = axis_plane(front.bounds, behind.bounds, eye_);
+  const Slack by_axis{t - axis.bodies, t - axis.eye};
+  if (by_axis.bodies > rounding && by_axis.bodies >= kFramesAhead * own_steps &&
+      by_axis.with_eye >= std::max(kFramesAhead * steps, kFirstSlack * smaller))
+    return {false, by_axis};
   exact = true;
   const ConvexSet a{front.points}, c{behind.points, &eye_};
-  const auto still_good = [&](double slack) {
-    return slack > rounding && (slack >= steps || witness.found_slack < kWorthASearch * steps);
+  const auto still_good = [&](const Slack& slack) {
+    return slack.least() > rounding && ((slack.bodies >= own_steps && slack.with_eye >= steps) ||
+                                        witness.found_slack < kWorthASearch * steps);
   };
   if (witness.enclosure) {
-    const double slack = depth_within(*witness.enclosure, a, c) - t;
+    const double depth = depth_within(*witness.enclosure, a, c) - t;
+    const Slack slack{depth, uses_apex(*witness.enclosure) ? depth : kWhereverTheEye * depth};
     if (still_good(slack)) return {true, slack};
   } else if (witness.plane != dvec3{0, 0, 0}) {
-    const double low = largest_along(witness.plane, front.points);
-    const double high =
-        -std::max(largest_along(-witness.plane, behind.points), glm::dot(-witness.plane, eye_));
-    const double slack = std::max(axis_slack, t - (low - high));
+    const Slack slack = slack_of(witness.plane, front, behind, t);
     if (still_good(slack)) return {false, slack};
+    if (still_good(by_axis)) return {false, by_axis};
   }
   const DepthDecision d = decide_depth(a, c, t, witness.plane, kWorthABound * steps);
   if (!d.decided) ++counters.undecided;
-  const Answer answer = d.deeper ? Answer{true, d.lower - t} : Answer{false, t - d.upper};
   witness.plane = d.normal;
   witness.enclosure = d.deeper ? d.enclosure : std::nullopt;
-  witness.found_slack = answer.slack;
+  const Answer answer = d.deeper ? Answer{true, {d.lower - t, d.lower - t}}
+                                 : Answer{false, slack_of(d.normal, front, behind, t)};
+  witness.found_slack = answer.slack.least();
   return answer;
 }
 
-void OcclusionRelations::test(int index, double travel, VisibilityCounters& counters) {
+void OcclusionRelations::test(int index, const Term& travel, VisibilityCounters& counters) {
   Pair& pair = pairs_[index];
   const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
   auto& [first, second] = witnesses_[index];
   bool exact = false;
   const auto renew = [&](const Body& front, const Body& behind, Witness& witness, bool& occluded) {
-    if (travel <= witness.term) return;
+    if (witness.term.holds_at(travel)) return;
     const Answer answer = occludes(front, behind, witness, counters, exact);
     // The tolerance itself follows the bodies' sizes, by twice their steps at most.
-    witness.term = travel + std::max(0.0, answer.slack) * 0.999 / (1 + 2 * touch_);
+    const double share = 0.999 / (1 + 2 * touch_);
+    witness.term = {travel.bodies + std::max(0.0, answer.slack.bodies) * share,
+                    travel.with_eye + std::max(0.0, answer.slack.with_eye) * share};
     occluded = answer.occludes;
   };
   renew(a, b, first, pair.first_occludes);
   renew(b, a, second, pair.second_occludes);
   counters.exact_tests += exact;
-  pair.term = std::min(first.term, second.term);
+  pair.term = {std::min(first.term.bodies, second.term.bodies),
+               std::min(first.term.with_eye, second.term.with_eye)};
 }
 
 void OcclusionRelations::update(VisibilityCounters& counters) {
@@ -312,8 +335,9 @@ void OcclusionRelations::update(VisibilityCounters& counters) {
   for (int i = 0; i < static_cast<int>(pairs_.size()); ++i) {
     const Pair& pair = pairs_[i];
     if (pair.first < 0) continue;
-    const double travel = travel_[pair.first] + travel_[pair.second] + eye_travel_;
-    if (travel > pair.term) test(i, travel, counters);
+    const double of_bodies = travel_[pair.first] + travel_[pair.second];
+    const Term travel{of_bodies, of_bodies + eye_travel_};
+    if (!pair.term.holds_at(travel)) test(i, travel, counters);
     counters.edges += pair.first_occludes + pair.second_occludes;
   }
   counters.pairs += static_cast<int>(pairs_.size() - free_pairs_.size());

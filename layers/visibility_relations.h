@@ -10,13 +10,15 @@
 ///   may move before they can leave is known too, so mostly they are not even computed.
 /// - *Answers with a term.* An exact test says by how much its bodies (and the eye) may move before the answer
 ///   can change: the gap to the plane that parts them, or the radius of the ball by which they overlap
-///   (layers/convex.h). Each body sums up the largest step of its points; while the three sums of a pair stay
-///   below the sum at the test plus that term, the answer holds.
+///   (layers/convex.h). Each body sums up the largest step of its points; while the sums of a pair stay below the
+///   sums at the test plus that term, the answer holds. The eye has a gap of its own: tiles that share an edge have
+///   next to none between them, and as long as they rest need none, however the eye moves on its side of the plane.
 /// - *Witnesses.* When the term is over, the extents along the axes are tried, then what showed the answer
 ///   last time: the plane that parted the bodies, or the four corners that enclosed the origin. Only where
 ///   that fails the search is run, from that plane.
 /// None of them changes an answer: they only save asking.
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -28,13 +30,20 @@
 
 namespace talisman::layers {
 
+/// Sums of travels: those up to which an answer holds, or those so far.
+struct Term {
+  double bodies = -1;    ///< of the two bodies
+  double with_eye = -1;  ///< of the two bodies and the eye
+  bool holds_at(const Term& travel) const { return travel.bodies <= bodies && travel.with_eye <= with_eye; }
+};
+
 class OcclusionRelations {
  public:
   /// Two bodies of different layers of one group whose widened extents overlap.
   struct Pair {
     int first = -1, second = -1;  ///< -1: no pair
     bool first_occludes = false, second_occludes = false;
-    double term = -1;  ///< sum of the travels up to which both answers hold
+    Term term;  ///< up to which both answers hold
   };
 
   explicit OcclusionRelations(double touch) : touch_(touch) {}
@@ -67,17 +76,23 @@ class OcclusionRelations {
     double extents_term = -1;   ///< sum of the travels up to which the extents stay within the widened ones
     std::vector<int> pairs;
   };
+  /// How far the two bodies may move together before an answer may change because of them, and how far they and the
+  /// eye may before it may because of the eye.
+  struct Slack {
+    double bodies = 0, with_eye = 0;
+    double least() const { return std::min(bodies, with_eye); }
+  };
   /// What is known of "one of the pair can occlude the other".
   struct Answer {
     bool occludes = false;
-    double slack = 0;  ///< how far the bodies and the eye may move together before it may change
+    Slack slack;
   };
   /// Of one direction of a pair: the plane that parted the one from the other and the eye.
   struct Witness {
     dvec3 plane{0, 0, 0};
     std::optional<Enclosure> enclosure;  ///< or the corners that show that they are not
     double found_slack = 0;              ///< when it was searched for
-    double term = -1;                    ///< sum of the travels up to which the answer holds
+    Term term;                           ///< up to which the answer holds
   };
   struct Witnesses {
     Witness first, second;  ///< of the first body, or the second, as the one in front
@@ -88,7 +103,8 @@ class OcclusionRelations {
   void look_up(int body, VisibilityCounters& counters);
   void add_pair(int first, int second);
   void drop_pair(int pair);
-  void test(int pair, double travel, VisibilityCounters& counters);
+  void test(int pair, const Term& travel, VisibilityCounters& counters);
+  Slack slack_of(const dvec3& plane, const Body& front, const Body& behind, double tolerance) const;
   Answer occludes(const Body& front, const Body& behind, Witness& witness, VisibilityCounters& counters,
                   bool& exact) const;
 

@@ -146,6 +146,14 @@ CapturedFrame& captured_frame(PipelineState& state, int frame) {
   return it->second;
 }
 
+/// What is known of the frame before that one, or else of the one after it.
+layers::KnownInfluences known_beside(const std::map<int, CapturedFrame>& captured, int frame) {
+  const auto at = captured.find(frame), after = std::next(at);
+  const auto beside = at != captured.begin() ? std::prev(at) : after;
+  if (beside == captured.end()) return {};
+  return {beside->second.lights, beside->second.states};
+}
+
 /// Does the picture of that beat stand in `frame`?
 bool continues(const Pipeline& pipeline, const BeatMemory& beat, int frame) {
   const int period = pipeline.settings.regulator.hold_frames;
@@ -206,7 +214,9 @@ const std::vector<LayerState>& captured_states(const Pipeline& pipeline, Pipelin
   if (any_shutter_open(state.layers))
     capture_motion(pipeline, state.layers, scene_as_known(pipeline, state, other_frame(pipeline, frame)),
                    frame, captured.states);
-  layers::capture_influences(*scene_frame, state.layers.set(), captured.states);
+  layers::capture_influences(*scene_frame, state.layers.set(), captured.states,
+                             known_beside(state.captured, frame));
+  captured.lights = scene_frame->lights;
   captured.shadow_maps = shadow_map_keys(pipeline.scene, state.layers.set(), *scene_frame);
   return captured.states;
 }

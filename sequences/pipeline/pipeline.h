@@ -87,6 +87,7 @@ struct CapturedFrame {
   std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
   int generation = -1;  ///< OrderMemory::generation: aggregates that exist since then are not captured yet
   std::vector<ShadowMapKey> shadow_maps;  ///< by light; empty where no shadow is called for
+  std::vector<layers::LightState> lights;  ///< of the scene
 };
 
 /// The last two frames of the motion, as far as a regulator that predicts knows it.

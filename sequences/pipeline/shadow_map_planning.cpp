@@ -102,7 +102,7 @@ std::vector<LayerState> states_with_old_shadows(const Pipeline& pipeline, const 
   std::vector<LayerState> cast = now;
   for (std::size_t id = 0; id < std::min(cast.size(), memory.world_points.size()); ++id)
     if (!memory.world_points[id].empty()) cast[id].world_points = memory.world_points[id];
-  layers::capture_influences(frame, report.layers.set(), cast);
+  layers::capture_influences(frame, report.layers.set(), cast, {state.captured.at(report.frame).lights, now});
   std::vector<LayerState> old = now;
   for (std::size_t id = 0; id < old.size(); ++id) take_shadows(cast[id], light, old[id]);
   return old;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layers/light_places.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -79,6 +80,41 @@ TEST(LightPlaces, PointLightHasItsFootAndARingAtFortyFiveDegrees) {
   EXPECT_LT(glm::distance(places[0].position, {2, 0, -1}), 1e-9);
   for (int i = 1; i <= layers::kRing; ++i)
     EXPECT_NEAR(glm::distance(places[static_cast<std::size_t>(i)].position, {2, 0, -1}), 3, 1e-9);
+}
+
+// Two faces of a box that look opposite ways follow each other in its list of triangles.
+TEST(LightPlaces, EachSideOfABoxHasTheFootOfALampBesideIt) {
+  for (const layers::BoundKind kind :
+       {layers::BoundKind::Box8, layers::BoundKind::Dop14, layers::BoundKind::Dop26}) {
+    const layers::Polyhedron box = layers::bounding_polyhedron(box_corners({1, 1, 1}), kind);
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double side : {-1.0, 1.0}) {
+        dvec3 at(0.1, 0.2, -0.3), foot = at;
+        at[axis] = 1.5 * side, foot[axis] = side;
+        std::vector<SurfacePlace> places;
+        layers::append_light_places(lamp(at), {9, 9, 9}, {}, {box.points, box.triangles}, places);
+        EXPECT_TRUE(
+            std::any_of(places.begin(), places.end(),
+                        [&](const SurfacePlace& p) { return glm::distance(p.position, foot) < 1e-9; }))
+            << axis << " " << side;
+      }
+  }
+}
+
+TEST(LightPlaces, EachSideOfABoxHasItsHighlight) {
+  MeanSurface shiny;
+  shiny.specular = dvec3(1.0), shiny.shininess = 60;
+  const layers::Polyhedron box = layers::bounding_polyhedron(box_corners({1, 1, 1}), layers::BoundKind::Box8);
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      dvec3 light_at(0.2), eye(-0.2), place(0.0);
+      light_at[axis] = eye[axis] = 3 * side, place[axis] = side;
+      std::vector<SurfacePlace> places;
+      layers::append_light_places(lamp(light_at), eye, shiny, {box.points, box.triangles}, places);
+      EXPECT_TRUE(std::any_of(places.begin(), places.end(),
+                              [&](const SurfacePlace& p) { return glm::distance(p.position, place) < 1e-9; }))
+          << axis << " " << side;
+    }
 }
 
 TEST(LightPlaces, HighlightObeysTheLawOfReflection) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <map>
+#include <tuple>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -279,6 +280,52 @@ TEST(ShadeState, LightBelowTheFloorOrInTheBallIsFinite) {
       }
     EXPECT_EQ(states[kShadow].traces.size(), 1u);
   }
+}
+
+/// The trace, as something that can be compared.
+auto as_tuple(const ShadeTrace& trace) {
+  std::vector<double> places;
+  for (const dvec3& p : trace.places)
+    for (int k = 0; k < 3; ++k) places.push_back(std::isnan(p[k]) ? 1e300 : p[k]);
+  return std::tuple(trace.kind, trace.light, trace.source, trace.on_receiver, places);
+}
+
+// What moved between the frames is worked out anew, what did not is taken: the traces are those without knowledge.
+TEST(ShadeState, KnowledgeOfAnotherFrameChangesNoTrace) {
+  const Room room = full_room();
+  const LayerSet set = room.layers();
+  const SceneFrame at_rest = room.scene.at(0);
+  const std::vector<LayerState> before = states_of(room);
+  for (const int moved : {-1, 0, 1, 2, 3}) {  // nothing, floor, ball, eye, lamp
+    const dvec3 by(0.25, 0.125, 0);
+    const std::vector<LayerState> plain = states_of(room, moved, by);
+    std::vector<LayerState> knowing = plain;
+    SceneFrame frame = at_rest;
+    if (moved >= 0) frame.world_from_node[moved][3] += dvec4(by, 0);
+    if (moved == 2) frame.camera.world_from_camera[3] += dvec4(by, 0);
+    if (moved == 3) frame.lights[0].position += by;
+    for (LayerState& state : knowing) state.traces.clear();
+    capture_influences(frame, set, knowing, {at_rest.lights, before});
+    for (std::size_t i = 0; i < plain.size(); ++i) {
+      ASSERT_EQ(knowing[i].traces.size(), plain[i].traces.size()) << moved;
+      for (std::size_t k = 0; k < plain[i].traces.size(); ++k)
+        EXPECT_EQ(as_tuple(knowing[i].traces[k]), as_tuple(plain[i].traces[k])) << moved << " " << i;
+    }
+  }
+}
+
+// A trace that is taken is taken as it is: one that was tampered with shows that it was.
+TEST(ShadeState, ShadowOfWhatRestsIsTakenFromTheFrameThatKnowsIt) {
+  const Room room = full_room();
+  const LayerSet set = room.layers();
+  const SceneFrame frame = room.scene.at(0);
+  std::vector<LayerState> known = states_of(room), now = known;
+  known[kShadow].traces[0].places[0] = dvec3(7, 7, 7);
+  capture_influences(frame, set, now, {frame.lights, known});
+  EXPECT_EQ(now[kShadow].traces[0].places[0], dvec3(7, 7, 7));
+  known[kBall].world_points[0].x += 1e-12;  // the caster has moved
+  capture_influences(frame, set, now, {frame.lights, known});
+  EXPECT_NE(now[kShadow].traces[0].places[0], dvec3(7, 7, 7));
 }
 
 TEST(ShadeState, ShadowThatFallsBesideTheReceiverIsNotOnIt) {

@@ -121,6 +121,24 @@ TEST(VisibilityMotion, NothingIsAskedTwiceAtRest) {
   }
 }
 
+// Tiles that share their edges have no gap but for the tolerance, 2 mm here. What rests needs none: only the eye moves, by
+// 30 mm in all, and stays on its side of all planes between them.
+TEST(VisibilityMotion, TilesAtRestAreNotAskedAgainWhileTheEyeMoves) {
+  std::vector<Points> tiles;
+  for (int i = 0; i < 6; ++i) tiles.push_back(box({2.0 * i, 0, 0}, {1, 0.2, 1}));
+  VisibilitySorter sorter;
+  for (int k = 0; k < 30; ++k) {
+    const dvec3 eye(-6, 0.001 * k, 0);
+    const World world{eye, tiles};
+    const VisibilityOrder order = sorter.sort(eye, world.occluders());
+    EXPECT_THAT(order.order, ElementsAre(5, 4, 3, 2, 1, 0));
+    if (k == 0)
+      EXPECT_GT(order.counters.exact_tests, 0);
+    else
+      EXPECT_EQ(order.counters.exact_tests, 0) << k;
+  }
+}
+
 // A plan that looks ahead sorts a copy; the sorter that it was copied from must not notice.
 TEST(VisibilityMotion, CopiesGoTheirOwnWay) {
   const tests::MovingBodies bodies(9, 30, 3, 0.05);
