@@ -160,8 +160,7 @@ unsigned outcode(const ViewHalfSpaces& view, const dvec4& clip) {
   return code;
 }
 
-bool is_same_place(const MaterialPoint& a, const MaterialPoint& b) {
-  constexpr double kRoundingOfCrossings = 1e-10;
+bool is_same_in_all_coordinates(const MaterialPoint& a, const MaterialPoint& b) {
   for (int state = 0; state < 2; ++state) {
     const dvec4 &p = a.clip[state], apart = glm::abs(p - b.clip[state]);
     const double size = std::max({std::fabs(p.x), std::fabs(p.y), std::fabs(p.z), std::fabs(p.w)});
@@ -195,6 +194,34 @@ std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> tria
   PointSet points(clip_0.size());
   clip_polygons(triangles, clip_0, clip_1, half_spaces, [&](std::span<const MaterialPoint> polygon) {
     for (const MaterialPoint& vertex : polygon) points.add(vertex);
+  });
+  return points.take();
+}
+
+void PolygonList::reserve(std::size_t polygons) {
+  constexpr std::size_t kUsualCorners = 3;
+  corners.reserve(corners.size() + kUsualCorners * polygons);
+  ends.reserve(ends.size() + polygons);
+}
+
+void PolygonList::push(std::span<const MaterialPoint> polygon) {
+  corners.insert(corners.end(), polygon.begin(), polygon.end());
+  ends.push_back(corners.size());
+}
+
+std::span<const MaterialPoint> PolygonList::operator[](std::size_t i) const {
+  const std::size_t begin = i == 0 ? 0 : ends[i - 1];
+  return std::span(corners).subspan(begin, ends[i] - begin);
+}
+
+std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> triangles,
+                                        std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
+                                        std::span<const HalfSpace> half_spaces, PolygonList& polygons) {
+  PointSet points(clip_0.size());
+  polygons.reserve(triangles.size());
+  clip_polygons(triangles, clip_0, clip_1, half_spaces, [&](std::span<const MaterialPoint> polygon) {
+    for (const MaterialPoint& vertex : polygon) points.add(vertex);
+    polygons.push(polygon);
   });
   return points.take();
 }

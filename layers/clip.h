@@ -17,6 +17,8 @@
 /// display.
 
 #include <array>
+#include <cmath>
+#include <cstddef>
 #include <functional>
 #include <span>
 #include <vector>
@@ -55,10 +57,19 @@ struct MaterialPoint {
   int point = -1;             ///< index of the vertex of the polyhedron, or -1 for a point made by clipping
 };
 
+/// Of the largest coordinate: two ways to one place differ by less.
+inline constexpr double kRoundingOfCrossings = 1e-10;
+
 /// The same place but for the rounding of two ways to it. A flat polyhedron has edges that coincide, and the
 /// point at which one leaves the view, if it counted as often as its roundings differ, would weigh more in a
-/// fit.
-bool is_same_place(const MaterialPoint& a, const MaterialPoint& b);
+/// fit. Most places differ in the first coordinate already.
+bool is_same_in_all_coordinates(const MaterialPoint& a, const MaterialPoint& b);
+inline bool is_same_place(const MaterialPoint& a, const MaterialPoint& b) {
+  const dvec4& p = a.clip[0];
+  const double at_least_size = std::fabs(p.x) + std::fabs(p.y) + std::fabs(p.z) + std::fabs(p.w);
+  if (std::fabs(p.x - b.clip[0].x) > kRoundingOfCrossings * at_least_size) return false;
+  return is_same_in_all_coordinates(a, b);
+}
 
 /// Calls `visit` with what the half-spaces leave of each triangle, a convex polygon, in the order of the
 /// triangles; not where nothing is left. At most 32 half-spaces. Cost: O(triangles · half-spaces) for triangles
@@ -74,5 +85,21 @@ void clip_polygons(std::span<const std::array<int, 3>> triangles, std::span<cons
 std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> triangles,
                                         std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
                                         std::span<const HalfSpace> half_spaces);
+
+/// Polygons one behind the other: the first has the corners up to ends[0], the next those up to ends[1] …
+struct PolygonList {
+  std::vector<MaterialPoint> corners;
+  std::vector<std::size_t> ends;
+
+  void reserve(std::size_t polygons);
+  void push(std::span<const MaterialPoint> polygon);
+  std::size_t size() const { return ends.size(); }
+  std::span<const MaterialPoint> operator[](std::size_t i) const;
+};
+
+/// The same vertices, and the polygons to which they belong, appended to `polygons`.
+std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> triangles,
+                                        std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
+                                        std::span<const HalfSpace> half_spaces, PolygonList& polygons);
 
 }  // namespace talisman::layers

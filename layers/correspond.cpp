@@ -128,14 +128,28 @@ struct DepthRatios {
   }
 };
 
+bool any_bow(const DepthRatios& ratios, const Correspondences& matched) {
+  return can_bow(ratios.least, ratios.most, diagonal_px(matched.now_px));
+}
+
 /// Places between the corners that the corners' motion does not explain (layers/foreshortening.h).
-/// `half_spaces`: those that clipped the surface; none where it is whole.
-void match_bowed_places(const LayerState& then, const LayerState& now, const Polyhedron& hull,
-                        std::span<const HalfSpace> half_spaces, const DepthRatios& ratios,
+void match_bowed_places(const LayerState& then, const LayerState& now, const PolygonList& surface,
                         Correspondences& matched) {
-  if (!can_bow(ratios.least, ratios.most, diagonal_px(matched.now_px))) return;
-  match_all(bowed_places(hull.triangles, then.clip_points, now.clip_points, half_spaces, now.view.display_px),
-            then, now, matched);
+  match_all(bowed_places(surface, now.view.display_px), then, now, matched);
+}
+
+PolygonList whole_surface(const LayerState& then, const LayerState& now, const Polyhedron& hull) {
+  PolygonList polygons;
+  polygons.reserve(hull.triangles.size());
+  for (const auto& triangle : hull.triangles) {
+    std::array<MaterialPoint, 3> corners;
+    for (int k = 0; k < 3; ++k) {
+      const int i = triangle[k];
+      corners[k] = {{then.clip_points[i], now.clip_points[i]}, i};
+    }
+    polygons.push(corners);
+  }
+  return polygons;
 }
 
 void match_whole_surface(const LayerState& then, const LayerState& now, const Polyhedron& hull,
@@ -144,16 +158,17 @@ void match_whole_surface(const LayerState& then, const LayerState& now, const Po
   DepthRatios ratios;
   for (std::size_t i = 0; i < now.clip_points.size(); ++i)
     ratios.include(then.clip_points[i], now.clip_points[i]);
-  match_bowed_places(then, now, hull, {}, ratios, matched);
+  if (any_bow(ratios, matched)) match_bowed_places(then, now, whole_surface(then, now, hull), matched);
 }
 
 void match_clipped_surface(const LayerState& then, const LayerState& now, const Polyhedron& hull,
                            const BothViews& half_spaces, Correspondences& matched) {
-  const auto points = clip_surface(hull.triangles, then.clip_points, now.clip_points, half_spaces);
+  PolygonList surface;
+  const auto points = clip_surface(hull.triangles, then.clip_points, now.clip_points, half_spaces, surface);
   match_all(points, then, now, matched);
   DepthRatios ratios;
   for (const MaterialPoint& p : points) ratios.include(p.clip[0], p.clip[1]);
-  match_bowed_places(then, now, hull, half_spaces, ratios, matched);
+  if (any_bow(ratios, matched)) match_bowed_places(then, now, surface, matched);
 }
 
 std::vector<MaterialPoint> in_either_view(const LayerState& then, const LayerState& now, const Views& views,

@@ -19,8 +19,6 @@
 /// like the corners, to be fitted and judged with them; a body whose depths keep their ratio to less than
 /// kLeastBow_px has none of them, and pays for a minimum and a maximum.
 
-#include <array>
-#include <span>
 #include <vector>
 
 #include "layers/clip.h"
@@ -43,11 +41,9 @@ Bow bow_of(double ratio);
 /// display on which they are `apart_px` from each other at most.
 bool can_bow(double least_ratio, double most_ratio, double apart_px);
 
-/// The material points at the largest differences along the edges and chords of the surface clipped to
-/// `half_spaces` (layers/clip.h), of kLeastBow_px and more, each place once, the largest first, at most
-/// kMostBowedPlaces. All w > 0 in both states. Cost: that of clip_surface, and O(chords).
-std::vector<MaterialPoint> bowed_places(std::span<const std::array<int, 3>> triangles,
-                                        std::span<const dvec4> clip_then, std::span<const dvec4> clip_now,
-                                        std::span<const HalfSpace> half_spaces, ivec2 display_px);
+/// The material points at the largest differences along the edges and chords of polygons, of kLeastBow_px and more,
+/// each place once, the largest first, at most kMostBowedPlaces. All w > 0 in both states, then and now. Cost:
+/// O(corners) where nothing bows, O(chords) else.
+std::vector<MaterialPoint> bowed_places(const PolygonList& polygons, ivec2 display_px);
 
 }  // namespace talisman::layers
