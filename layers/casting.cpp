@@ -137,6 +137,63 @@ Scales scales_of(std::span<const dvec3> caster, std::span<const dvec3> receiver)
   return {all.middle(), glm::length(all.size())};
 }
 
+/// Of some points, along an axis or as a slope.
+struct Range {
+  double lo = HUGE_VAL, hi = -HUGE_VAL;
+  void include(double value) { lo = std::min(lo, value), hi = std::max(hi, value); }
+  bool lies_beyond(const Range& o, double gap) const { return lo > o.hi + gap; }
+};
+
+/// The points seen along an axis: across it and along it. From a place the ranges across are slopes, which exist where
+/// all points lie ahead.
+struct SeenAlong {
+  Range u, v, along;
+  bool is_ahead = true;
+};
+
+/// Three axes at right angles, the last one along `way`, and where they meet.
+struct LightAxes {
+  dvec3 origin, u, v, way;
+  bool is_place;
+
+  LightAxes(const dvec3& from, const dvec3& towards, bool place)
+      : origin(from), way(towards), is_place(place) {
+    u = normalize(cross(way, std::fabs(way.x) < 0.6 ? dvec3(1, 0, 0) : dvec3(0, 1, 0)));
+    v = cross(way, u);
+  }
+
+  SeenAlong of(std::span<const dvec3> points) const {
+    SeenAlong seen;
+    for (const dvec3& p : points) {
+      const dvec3 offset = p - origin;
+      const double depth = dot(offset, way);
+      seen.along.include(depth);
+      seen.is_ahead = seen.is_ahead && depth > 0;
+      const double scale = is_place && seen.is_ahead ? 1 / depth : 1;
+      seen.u.include(scale * dot(offset, u));
+      seen.v.include(scale * dot(offset, v));
+    }
+    return seen;
+  }
+};
+
+/// Does a plane along the light, or one across it, show at once that no shadow falls on the receiver? Of most pairs
+/// one does, for a tenth of what a search costs.
+bool are_clearly_apart(const LightState& light, std::span<const dvec3> caster,
+                       std::span<const dvec3> receiver, const Scales& scales) {
+  const bool is_place = light.kind != Light::Kind::Directional;
+  const dvec3 way = is_place ? scales_of(receiver, {}).origin - light.position : light.direction;
+  const double length = glm::length(way);
+  if (!(length > kTouching * scales.extent)) return false;
+  const LightAxes axes(is_place ? light.position : scales.origin, way / length, is_place);
+  const SeenAlong from = axes.of(caster), onto = axes.of(receiver);
+  if (from.along.lies_beyond(onto.along, kTouching * scales.extent)) return !is_place || onto.is_ahead;
+  if (is_place && !(from.is_ahead && onto.is_ahead)) return false;
+  const double gap = is_place ? kTouching : kTouching * scales.extent;
+  return from.u.lies_beyond(onto.u, gap) || onto.u.lies_beyond(from.u, gap) ||
+         from.v.lies_beyond(onto.v, gap) || onto.v.lies_beyond(from.v, gap);
+}
+
 bool may_cast_along(const dvec3& direction, const std::vector<dvec3>& caster, std::vector<dvec3> receiver,
                     double extent) {
   const std::size_t count = receiver.size();
@@ -191,9 +248,11 @@ std::vector<CastingTile> casting_tiles(const Scene& scene, std::span<const int> 
 
 bool may_cast(const LightState& light, std::span<const dvec3> caster, std::span<const dvec3> receiver) {
   if (light.kind == Light::Kind::Ambient || caster.empty() || receiver.empty()) return false;
-  const auto [origin, extent] = scales_of(caster, receiver);
+  const Scales scales = scales_of(caster, receiver);
+  const auto [origin, extent] = scales;
   const bool has_place = light.kind != Light::Kind::Directional;
   if (!std::isfinite(extent) || !layers::is_finite(has_place ? light.position : light.direction)) return true;
+  if (are_clearly_apart(light, caster, receiver, scales)) return false;
   const std::vector<dvec3> casting = relative_to(caster, origin), receiving = relative_to(receiver, origin);
   if (!has_place) {
     if (!(glm::length(light.direction) > 0)) return false;

@@ -134,24 +134,26 @@ void forget(PipelineState& state, CapturedIterator first, CapturedIterator last)
   state.captured.erase(first, last);
 }
 
-/// The frame as it was captured before, or an empty one in the memory of one that was forgotten.
+/// The frame as it was captured before, or an empty one in the memory of one that was forgotten; not of the last of
+/// them, of which known_beside may still tell.
 CapturedFrame& captured_frame(PipelineState& state, int frame) {
   const auto [it, is_new] = state.captured.try_emplace(frame);
-  if (!is_new || state.forgotten.empty()) return it->second;
-  it->second = std::move(state.forgotten.back());
-  state.forgotten.pop_back();
+  if (!is_new || state.forgotten.size() < 2) return it->second;
+  it->second = std::move(state.forgotten.front());
+  state.forgotten.erase(state.forgotten.begin());
   it->second.generation = -1;
   for (LayerState& layer : it->second.states) layer.layer = -1;
   it->second.placements.assign(it->second.placements.size(), std::nullopt);
   return it->second;
 }
 
-/// What is known of the frame before that one, or else of the one after it.
-layers::KnownInfluences known_beside(const std::map<int, CapturedFrame>& captured, int frame) {
-  const auto at = captured.find(frame), after = std::next(at);
-  const auto beside = at != captured.begin() ? std::prev(at) : after;
-  if (beside == captured.end()) return {};
-  return {beside->second.lights, beside->second.states};
+/// What is known of the frame before that one, or else of the one after it, or of the one that was forgotten last.
+layers::KnownInfluences known_beside(const PipelineState& state, int frame) {
+  const auto at = state.captured.find(frame), after = std::next(at);
+  if (at != state.captured.begin()) return {std::prev(at)->second.lights, std::prev(at)->second.states};
+  if (after != state.captured.end()) return {after->second.lights, after->second.states};
+  if (state.forgotten.empty()) return {};
+  return {state.forgotten.back().lights, state.forgotten.back().states};
 }
 
 /// Does the picture of that beat stand in `frame`?
@@ -214,8 +216,7 @@ const std::vector<LayerState>& captured_states(const Pipeline& pipeline, Pipelin
   if (any_shutter_open(state.layers))
     capture_motion(pipeline, state.layers, scene_as_known(pipeline, state, other_frame(pipeline, frame)),
                    frame, captured.states);
-  layers::capture_influences(*scene_frame, state.layers.set(), captured.states,
-                             known_beside(state.captured, frame));
+  layers::capture_influences(*scene_frame, state.layers.set(), captured.states, known_beside(state, frame));
   captured.lights = scene_frame->lights;
   captured.shadow_maps = shadow_map_keys(pipeline.scene, state.layers.set(), *scene_frame);
   return captured.states;
