@@ -62,15 +62,16 @@ bool is_highlight(const Layer& layer) {
   return is_built(Effect::SpecularLayer) && layer.kind == LayerKind::Specular;
 }
 
-/// What has stayed as it is in another frame that is known. Aggregates are not looked up: one of the same number may
-/// have had other members.
+/// What has stayed as it is in another frame that is known. An aggregate of the same number may have had other members;
+/// what makes its traces is its points, as long as no plane is theirs.
 class Rest {
  public:
   Rest(const SceneFrame& frame, const LayerSet& set, std::span<const LayerState> states,
        const KnownInfluences& known)
       : known_(known), layers_(states.size(), 0), lights_(frame.lights.size(), 0) {
     for (std::size_t i = 0; i < std::min(known.states.size(), states.size()); ++i)
-      layers_[i] = !set.layers[i].is_aggregate() && is_same_body(known.states[i], states[i]);
+      layers_[i] =
+          !(set.layers[i].is_aggregate() && set.layers[i].plane) && is_same_body(known.states[i], states[i]);
     for (std::size_t i = 0; i < std::min(known.lights.size(), frame.lights.size()); ++i)
       lights_[i] = known.lights[i] == frame.lights[i];
   }
