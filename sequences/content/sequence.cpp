@@ -102,8 +102,8 @@ Factoring found_layers(Sequence& sequence, const BuiltScene& built, const std::v
   std::vector<layers::LayerSpec> kept = tagged_specs(built.scene, built.layer_tags);
   add_image_layers(images, kept);
   Factoring found = study({built.scene, std::move(kept), {}, own_settings(sequence)}, options).chosen;
-  for (const SeenPair& seen : found.order)
-    if (seen.hidden > 0) sequence.warnings.push_back(sequence.file + ": " + hidden_in_words(found, seen));
+  for (const std::string& line : hidden_in_words(found))
+    sequence.warnings.push_back(sequence.file + ": " + line);
   return found;
 }
 

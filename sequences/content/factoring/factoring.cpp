@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 
+#include "sequences/content/factoring/backdrops.h"
 #include "sequences/files/number_text.h"
 
 namespace talisman::sequences {
@@ -75,6 +76,7 @@ class Study {
   FactoringStudy run() {
     const bool by_node = options_.way == FactoringWay::Node;
     if (pieces_.free > 1 && pieces_.free <= kMostFactoredPieces && (!by_node || too_many_nodes())) look();
+    if (data_) behind_ = pieces_behind(scene_.scene, pieces_, data_->depths);
     std::vector<Factoring> all = by_node || !data_ ? by_nodes() : by_velocity();
     FactoringStudy result;
     const auto best = std::min_element(all.begin(), all.end(), [](const Factoring& a, const Factoring& b) {
@@ -103,7 +105,11 @@ class Study {
                        {scene_.scene, pieces_.layers, times_of(instants_, scene_.settings.fps),
                         scene_.settings.view.display_px}});
   }
-  GroupingData data() const { return {pieces_, data_->motion, data_->depths, scene_.settings.frames}; }
+  GroupingData data(bool background = false) const {
+    return {pieces_, data_->motion, data_->depths, scene_.settings.frames,
+            background ? behind_ : std::vector<bool>{}};
+  }
+  bool any_behind() const { return std::find(behind_.begin(), behind_.end(), true) != behind_.end(); }
 
   Groups alone() const {
     Groups groups;
@@ -163,9 +169,29 @@ class Study {
     return sharing_of(scene_.scene, f.specs, f.pairs(), scene_.settings, instants_);
   }
 
+  /// Puts what lies behind all else into the background.
+  void put_behind(Factoring& f) const {
+    f.has_background = true;
+    for (std::size_t i = scene_.kept.size(); i < f.specs.size(); ++i)
+      if (behind_[f.pieces[i].front()]) f.specs[i].group = layers::OrderGroup::Background;
+    for (std::size_t i = scene_.kept.size(); i < f.specs.size(); ++i)
+      for (std::size_t k = 0; k < f.specs.size(); ++k) {
+        const bool crosses = f.specs[i].group == layers::OrderGroup::Background &&
+                             f.specs[k].group == layers::OrderGroup::Normal;
+        const double hidden = crosses ? share_in_front(f.pieces[i], f.pieces[k]) : 0;
+        if (hidden > 0) f.over.push_back({{i, k}, hidden});
+      }
+  }
+
+  double share_in_front(const std::vector<int>& a, const std::vector<int>& b) const {
+    const double first = pixels_in_front(data_->depths, a, b), second = pixels_in_front(data_->depths, b, a);
+    return first > 0 ? first / (first + second) : 0;
+  }
+
   /// With pairs where the bounds know no order.
-  Factoring in_order(const std::string& how, const Groups& groups) const {
+  Factoring in_order(const std::string& how, const Groups& groups, bool background) const {
     Factoring f = factoring_of(how, groups);
+    if (background) put_behind(f);
     std::vector<layers::OrderGroup> places;
     for (const LayerSpec& spec : f.specs) places.push_back(spec.group);
     for (int round = 0; round < kOrderRounds; ++round) {
@@ -191,12 +217,19 @@ class Study {
     frames_ = frames_planned(std::max(bodies.size(), nodes_.size()) + scene_.kept.size());
     std::vector<Factoring> all;
     for (const Groups& start : {alone(), bodies, nodes_})
-      add_by_velocity(grouped(data(), {options_.max, false}, start), all);
+      add_by_velocity(grouped(data(), {options_.max, false}, start), false, all);
+    if (any_behind())
+      for (const Groups& start : {alone(), bodies, nodes_}) {
+        const Groups cut = cut_by(behind_, start);
+        add_by_velocity(grouped(data(true), {options_.max, false}, cut), true, all);
+        if (cut.size() <= static_cast<std::size_t>(options_.max)) add_once(cut, true, all);
+      }
     for (int round = 0; round < kSplitRounds; ++round) {
       const auto best = std::min_element(all.begin(), all.end(), [](const Factoring& a, const Factoring& b) {
         return a.plan.work_ms() < b.plan.work_ms();
       });
-      if (!add_once(split_where_cheaper(*best, bodies), all)) break;
+      const bool background = best->has_background;
+      if (!add_once(split_where_cheaper(*best, bodies), background, all)) break;
     }
     if (nodes_.size() <= static_cast<std::size_t>(options_.max)) {
       all.push_back(factoring_of("node", nodes_));
@@ -208,19 +241,21 @@ class Study {
   }
 
   /// Orders and plans the groups; false: they are there already.
-  bool add_once(Groups groups, std::vector<Factoring>& all) const {
+  bool add_once(Groups groups, bool background, std::vector<Factoring>& all) const {
     std::sort(groups.begin(), groups.end());
     const auto first = static_cast<std::ptrdiff_t>(scene_.kept.size());
     for (const Factoring& f : all)
-      if (std::equal(f.pieces.begin() + first, f.pieces.end(), groups.begin(), groups.end())) return false;
-    all.push_back(in_order("velocity", groups));
+      if (f.has_background == background &&
+          std::equal(f.pieces.begin() + first, f.pieces.end(), groups.begin(), groups.end()))
+        return false;
+    all.push_back(in_order("velocity", groups, background));
     plan(all.back());
     return true;
   }
 
   /// The groups, and the same with those joined that share a sprite in most of the frames anyway.
-  void add_by_velocity(Groups groups, std::vector<Factoring>& all) const {
-    for (int round = 0; round <= kJoinRounds && add_once(groups, all); ++round)
+  void add_by_velocity(Groups groups, bool background, std::vector<Factoring>& all) const {
+    for (int round = 0; round <= kJoinRounds && add_once(groups, background, all); ++round)
       groups = joined_where_shared(all.back());
   }
 
@@ -313,7 +348,8 @@ class Study {
   Pieces pieces_, node_pieces_;
   Groups nodes_;
   std::optional<Data> data_;
-  int frames_ = 1;  ///< that comparisons plan
+  std::vector<bool> behind_;  ///< by piece (backdrops.h)
+  int frames_ = 1;            ///< that comparisons plan
 };
 
 }  // namespace
@@ -324,11 +360,19 @@ std::vector<SpecPair> Factoring::pairs() const {
   return pairs;
 }
 
-std::string hidden_in_words(const Factoring& factoring, const SeenPair& seen) {
-  return formatted(
-      "layer '%s' is drawn over '%s', which hides it at %.2g %% of the pixels at which both were seen",
-      factoring.specs[seen.pair.second].name.c_str(), factoring.specs[seen.pair.first].name.c_str(),
-      100 * seen.hidden);
+std::vector<std::string> hidden_in_words(const Factoring& factoring) {
+  std::vector<std::string> lines;
+  const auto say = [&](const SeenPair& seen, double more_than) {
+    if (!(seen.hidden > more_than)) return;
+    const std::string &front = factoring.specs[seen.pair.second].name,
+                      &behind = factoring.specs[seen.pair.first].name;
+    lines.push_back(formatted(
+        "layer '%s' is drawn over '%s', which hides it at %.2g %% of the pixels at which both were seen",
+        front.c_str(), behind.c_str(), 100 * seen.hidden));
+  };
+  for (const SeenPair& seen : factoring.order) say(seen, 0);
+  for (const SeenPair& seen : factoring.over) say(seen, kHidden);
+  return lines;
 }
 
 FactoringStudy study(const Unfactored& scene, const AutoLayers& options) {

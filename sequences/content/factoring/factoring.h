@@ -49,12 +49,15 @@ struct Factoring {
   std::vector<SeenPair> order;
   PlannedFactoring plan;
   std::vector<SpecPair> asked;  ///< of which pairs the bounds knew no order
+  bool has_background = false;  ///< what lies behind all else (backdrops.h) is in the background
+  std::vector<SeenPair> over;   ///< layers that the background is drawn behind, though it hides some of them
 
   std::vector<SpecPair> pairs() const;
 };
 
-/// "layer 'ship' is drawn over 'land', which hides it at 0.4 % of the pixels that both were seen at".
-std::string hidden_in_words(const Factoring& factoring, const SeenPair& seen);
+/// "layer 'ship' is drawn over 'land', which hides it at 0.4 % of the pixels that both were seen at": of each pair that the
+/// order shows wrongly somewhere, and of what stands before the background where that is more than kHidden.
+std::vector<std::string> hidden_in_words(const Factoring& factoring);
 
 /// Every layer that was looked at, and what was found on the way.
 struct FactoringStudy {

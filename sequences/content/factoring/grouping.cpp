@@ -145,7 +145,12 @@ class Grouping {
     return group_of(std::move(pieces));
   }
 
+  bool is_behind(const std::vector<int>& pieces) const {
+    return !data_.behind.empty() && data_.behind[pieces.front()];
+  }
+
   bool have_no_order(const std::vector<int>& a, const std::vector<int>& b) const {
+    if (is_behind(a) != is_behind(b)) return false;
     if (hidden_share(data_.depths, a, b) <= kHidden) return false;
     double mutual = 0, related = 0;
     for (const int one : a)
@@ -188,6 +193,7 @@ class Grouping {
   void consider(std::size_t a, std::size_t b) {
     const Group &one = groups_[a], &other = groups_[b];
     if (one.is_dead || other.is_dead || !one.free || !other.free) return;
+    if (is_behind(one.pieces) != is_behind(other.pieces)) return;
     std::vector<double> renders(one.renders.size());
     std::vector<RectD> bounds(renders.size());
     for (std::size_t s = 0; s < renders.size(); ++s) {

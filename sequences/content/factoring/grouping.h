@@ -48,6 +48,8 @@ struct GroupingData {
   const PieceMotion& motion;
   const DepthSamples& depths;
   int frames = 1;
+  std::vector<bool>
+      behind{};  ///< by piece, of what no other is joined with (backdrops.h); empty: there are none
 };
 
 /// What a sprite of these pieces costs, as estimated here.

@@ -6,8 +6,6 @@
 
 namespace talisman::sequences {
 
-namespace {
-
 double pixels_in_front(const DepthSamples& depths, const std::vector<int>& front,
                        const std::vector<int>& behind) {
   double sum = 0;
@@ -15,6 +13,8 @@ double pixels_in_front(const DepthSamples& depths, const std::vector<int>& front
     for (const int b : behind) sum += depths.in_front(f, b);
   return sum;
 }
+
+namespace {
 
 /// Share of the frames in which two of their pieces meet; of those pieces for which it is largest.
 double share_of_frames(const DepthSamples& depths, const std::vector<int>& front,

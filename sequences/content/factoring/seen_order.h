@@ -19,6 +19,10 @@ namespace talisman::sequences {
 /// Share of the common pixels, and of the frames in which they meet, at which the layer in front may have been behind.
 inline constexpr double kHidden = 0.01, kHiddenFrames = 0.125;
 
+/// Coarse pixels, over all frames, at which a piece of the one was in front of one of the other.
+double pixels_in_front(const DepthSamples& depths, const std::vector<int>& front,
+                       const std::vector<int>& behind);
+
 /// Of the pixels at which both were seen the share at which the one that mostly is in front was behind; 0 … 0.5.
 double hidden_share(const DepthSamples& depths, const std::vector<int>& a, const std::vector<int>& b);
 

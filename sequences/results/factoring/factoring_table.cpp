@@ -66,8 +66,7 @@ std::string layers_table(const ComparedFactoring& compared) {
                           fixed(row.render_ms / std::max(frames, 1.0), 3)});
   }
   std::string text = plain_text(table);
-  for (const SeenPair& seen : study.chosen.order)
-    if (seen.hidden > 0) text += "  " + hidden_in_words(study.chosen, seen) + "\n";
+  for (const std::string& line : hidden_in_words(study.chosen)) text += "  " + line + "\n";
   return text;
 }
 
