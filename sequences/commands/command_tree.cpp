@@ -38,6 +38,7 @@ constexpr std::array kExamples{
              "talisman audit carousel --policy interpolate --hold 4 --every 1"},
     Examples{"explain", "talisman explain carousel --frame 17",
              "talisman explain out/carousel --frame 17 --layer 'horse 1'"},
+    Examples{"view", "talisman view carousel", "talisman view model.glb --geometric-px 2 --port 8080"},
     Examples{"tune", "talisman tune carousel --flip 0.02 --frames 0-23 --size 160x120",
              "talisman tune carousel --budget-ms 8"},
     Examples{"inspect", "talisman inspect carousel --order", "talisman inspect model.glb --parts"},
@@ -78,6 +79,7 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
       "licences of what others wrote and this tool holds");
   add_runs(stop);
   add_explain();
+  add_view(stop);
   add_tune(stop);
   add_compare(stop);
   add_inspect();
@@ -87,8 +89,8 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_warps();
   add_reproduce();
   add_accuracy();
-  for (const char* command : {"render", "plan", "audit", "explain", "tune", "compare", "inspect", "init",
-                              "warps", "reproduce", "accuracy"})
+  for (const char* command : {"render", "plan", "audit", "explain", "view", "tune", "compare", "inspect",
+                              "init", "warps", "reproduce", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
   add_examples(app_);
 }
@@ -124,13 +126,25 @@ void CommandTree::add_explain() {
       .option(
           "--layer", explain_.layer,
           "name of a layer, of a merged one, or of a shadow map: all that is known of it, with a picture");
-  add_decision_options(*command, explain_.line);
+  add_decision_options(*command, explain_.line, "the pictures", "out/NAME-explain");
   command->callback([this, command] {
     for (const CLI::Option* option : command->get_options())
       if (option->count() > 0 && option->get_positional() == false && option->get_name() != "--frame" &&
           option->get_name() != "--layer")
         explain_.others.push_back(option->get_name());
     exit_code_ = run_explain(explain_, std::cout);
+  });
+}
+
+void CommandTree::add_view(const std::atomic<bool>& stop) {
+  CLI::App* command = app_.add_subcommand(
+      "view", "plans and pictures in the browser, live: move a slider and watch; on 127.0.0.1 alone");
+  OptionGroup(*command, "Server").option("--port", view_.port, "of 127.0.0.1; 0: any that is free", "0");
+  add_decision_options(*command, view_.line, "flights that are saved", "out/NAME-view");
+  command->callback([this, command, &stop] {
+    view_.given = given_settings(*command);
+    view_.controls = view_controls(*command);
+    exit_code_ = run_view(view_, stop, std::cout);
   });
 }
 

@@ -19,6 +19,7 @@
 #include "sequences/commands/report_command.h"
 #include "sequences/commands/reproduce.h"
 #include "sequences/commands/tune.h"
+#include "sequences/commands/view.h"
 #include "sequences/commands/warps.h"
 #include "sequences/files/errors.h"
 
@@ -39,6 +40,7 @@ class CommandTree {
  private:
   void add_runs(const std::atomic<bool>& stop);
   void add_explain();
+  void add_view(const std::atomic<bool>& stop);
   void add_tune(const std::atomic<bool>& stop);
   void add_compare(const std::atomic<bool>& stop);
   void add_inspect();
@@ -53,6 +55,7 @@ class CommandTree {
   CommandLine line_;
   std::string split_;
   ExplainOptions explain_;
+  ViewOptions view_;
   TuneOptions tune_;
   CompareOptions compare_;
   InspectOptions inspect_;

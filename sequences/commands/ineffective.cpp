@@ -32,6 +32,10 @@ class Given {
   std::vector<std::string>& names_;
 };
 
+bool is_read_by(const Group& group, Policy policy) {
+  return std::find(group.readers.begin(), group.readers.end(), policy) != group.readers.end();
+}
+
 std::vector<Group> groups_of(const CommandLine& line) {
   using enum Policy;
   std::vector<Group> groups = {{{Hold, Interpolate}, {}},
@@ -62,9 +66,7 @@ std::vector<Group> groups_of(const CommandLine& line) {
 
 std::string of_another_policy(const CommandLine& line, Policy policy) {
   for (const Group& group : groups_of(line)) {
-    if (group.given.empty() ||
-        std::find(group.readers.begin(), group.readers.end(), policy) != group.readers.end())
-      continue;
+    if (group.given.empty() || is_read_by(group, policy)) continue;
     std::vector<std::string> readers;
     for (const Policy reader : group.readers) readers.emplace_back(regulator::name(reader));
     const bool is_one = group.given.size() == 1;
@@ -73,6 +75,13 @@ std::string of_another_policy(const CommandLine& line, Policy policy) {
            listed(readers, "and") + (readers.size() == 1 ? " has " : " have ") + (is_one ? "it" : "them");
   }
   return {};
+}
+
+std::vector<std::string> options_of_other_policies(const CommandLine& line, Policy policy) {
+  std::vector<std::string> names;
+  for (const Group& group : groups_of(line))
+    if (!is_read_by(group, policy)) names.insert(names.end(), group.given.begin(), group.given.end());
+  return names;
 }
 
 }  // namespace talisman::sequences

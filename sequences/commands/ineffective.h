@@ -5,6 +5,7 @@
 /// misunderstanding of the policy: --budget-polygons without --policy budget.
 
 #include <string>
+#include <vector>
 
 #include "regulator/plan.h"
 #include "sequences/commands/options.h"
@@ -15,5 +16,8 @@ namespace talisman::sequences {
 /// the same policies read; empty if all that was given is read. Keys of a sequence are not looked at: they are
 /// there for every policy that may be asked for.
 std::string of_another_policy(const CommandLine& line, regulator::Policy policy);
+
+/// All of them: "--budget-polygons", …
+std::vector<std::string> options_of_other_policies(const CommandLine& line, regulator::Policy policy);
 
 }  // namespace talisman::sequences

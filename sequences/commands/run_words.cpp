@@ -174,10 +174,11 @@ void add_run_options(CLI::App& command, CommandLine& line) {
   add_decisions(command, line);
 }
 
-void add_decision_options(CLI::App& command, CommandLine& line) {
+void add_decision_options(CLI::App& command, CommandLine& line, const std::string& folder_of,
+                          const std::string& folder) {
   add_sequence_option(command, line);
   OptionGroup(command, "Run")
-      .option("--out", line.out, "folder of the pictures", "out/NAME-explain")
+      .option("--out", line.out, "folder of " + folder_of, folder)
       .option("--size", line.size, "display, WxH pixels", in_words(Sequence().display_px));
   add_content_options(command, line.content);
   add_decisions(command, line);

@@ -19,8 +19,9 @@ OptionGroup add_run_group(CLI::App& command, CommandLine& line, const std::strin
 void add_run_options(CLI::App& command, CommandLine& line);
 /// Those about content, which every command has that opens it.
 void add_content_options(CLI::App& command, ContentWords& words);
-/// Those of `explain`: what decides, and where its pictures go.
-void add_decision_options(CLI::App& command, CommandLine& line);
+/// Those of `explain` and `view`: what decides; and the folder of what, "the pictures", and its name.
+void add_decision_options(CLI::App& command, CommandLine& line, const std::string& folder_of,
+                          const std::string& folder);
 /// The further options of `render`.
 void add_audit_options(CLI::App& command, CommandLine& line);
 void add_picture_options(CLI::App& command, CommandLine& line);

@@ -22,7 +22,7 @@ ContentHash hash_now() {
   ContentHasher hasher;
   hasher.add(hash_of_file(files.front()).value_or(ContentHash{}));
   for (const std::string& file : files) hasher.add(file).add(stamp_of(file));
-  hasher.add(stamp_of(picture_module()));  // may be loaded later
+  hasher.add(stamp_of(program_module("talisman_pictures.so")));  // may be loaded later
   return hasher.hash();
 }
 

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "sequences/files/errors.h"
+
 namespace talisman::sequences {
 
 namespace {
@@ -70,7 +72,18 @@ std::string program_folder() {
 
 std::string importer_program() { return beside_or_in("talisman_import", TALISMAN_LIBEXEC_FOLDER); }
 
-std::string picture_module() { return beside_or_in("talisman_pictures.so", TALISMAN_LIB_FOLDER); }
+std::string program_module(const std::string& file) {
+  return beside_or_in(file.c_str(), TALISMAN_LIB_FOLDER);
+}
+
+void* program_symbol(const std::string& module, const char* symbol, const std::string& what_cannot_be_done) {
+  const std::string file = program_module(module);
+  void* const loaded = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const found = loaded ? ::dlsym(loaded, symbol) : nullptr;
+  if (found) return found;
+  const char* why = ::dlerror();
+  throw OutputError(what_cannot_be_done + ": " + std::string(why ? why : file));
+}
 
 std::string data_folder() {
   for (const fs::path& folder : places())

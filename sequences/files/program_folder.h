@@ -7,6 +7,7 @@
 ///   the tool     build/…/bin/talisman              PREFIX/bin/talisman
 ///   importer     build/…/bin/talisman_import       PREFIX/libexec/talisman/talisman_import
 ///   pictures     build/…/bin/talisman_pictures.so  PREFIX/lib/talisman/talisman_pictures.so
+///   live view    build/…/bin/talisman_view.so      PREFIX/lib/talisman/talisman_view.so
 ///   sequences    sequences/ of the source tree     PREFIX/share/talisman/sequences/
 ///
 /// Both kinds of tree can be moved: everything is looked for in the folders above the file from which this code
@@ -24,8 +25,13 @@ std::string program_folder();
 /// The program that reads models (import/model_import.h); where it should be if it is not there.
 std::string importer_program();
 
-/// The module that reads and writes picture files (files/picture_codec.h); where it should be if it is not there.
-std::string picture_module();
+/// A module of the program, "talisman_pictures.so" (files/picture_codec.h), "talisman_view.so" (view/http_service.h); where
+/// it should be if it is not there.
+std::string program_module(const std::string& file);
+
+/// Loads a module, since what it links would make every command start later, and returns a symbol of it, which stays for
+/// as long as the program lasts. Throws OutputError, "WHAT: why".
+void* program_symbol(const std::string& module, const char* symbol, const std::string& what_cannot_be_done);
 
 /// The folder whose folder sequences/ has the sequences that come with the program: the root of the source tree,
 /// or PREFIX/share/talisman. Empty when there is none, because the program was moved away from them.

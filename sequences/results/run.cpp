@@ -12,7 +12,7 @@
 #include "sequences/files/frame_writer.h"
 #include "sequences/files/line_file.h"
 #include "sequences/files/video.h"
-#include "sequences/pictures/overlay.h"
+#include "sequences/pictures/outlined_frame.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/make_pipeline.h"
 #include "sequences/pipeline/open_seams.h"
@@ -36,16 +36,6 @@ FrameQuality judge(const Pipeline& pipeline, const FrameReport& report,
   const Image8 reference = to_image8(draw_reference(pipeline, report.frame, prepared));
   const Image8 direct = to_image8(draw_direct(pipeline, report.frame, prepared));
   return {compare(shown, direct), compare(shown, reference), compare(reference, direct)};
-}
-
-Image8 with_outlines(const FrameReport& report) {
-  std::vector<Outline> outlines;
-  for (const ShownSprite& sprite : report.shown)
-    outlines.push_back({sprite.screen_from_sprite, sprite.size_px, sprite.age_frames,
-                        outline_label(report.layers[sprite.layer].name, sprite.age_frames), sprite.layer});
-  Image8 image = to_image8(report.picture);
-  draw_overlay(image, outlines);
-  return image;
 }
 
 /// A frame's picture, ready for the disk.

@@ -25,8 +25,8 @@ const std::map<std::string, std::vector<std::string>> kMayInclude = {
 };
 
 /// The rooms inside sequences/: each may include itself and those before it.
-const std::vector<std::string> kRooms = {"pipeline", "files",       "pictures", "import", "content",
-                                         "results",  "experiments", "commands", "python"};
+const std::vector<std::string> kRooms = {"pipeline", "files",       "pictures", "import",   "content",
+                                         "results",  "experiments", "view",     "commands", "python"};
 
 struct SourceFile {
   std::string folder;

@@ -10,7 +10,12 @@ namespace talisman::sequences {
 /// False with TALISMAN_REPORT=OFF: there is neither template nor library, and no report.
 bool has_report();
 
-/// By its name: "page.html", "page.css", "page.js", "dygraph.js", "dygraph.css", "dygraph.licence". Empty: there is none.
+/// By its name. Empty: there is none.
+///
+///   page.css, page.js                           what the report and the live view share
+///   page.html, report.js                        the report
+///   view.html, view.css, view.js                the live view
+///   dygraph.js, dygraph.css, dygraph.licence    the library
 std::string_view page_asset(std::string_view name);
 
 }  // namespace talisman::sequences

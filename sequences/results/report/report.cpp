@@ -230,7 +230,7 @@ std::string report_html(std::vector<ReportRun>& runs) {
                                           {"data", json_in_script(data)},
                                           {"columns", scripts},
                                           {"library", asset("dygraph.js")},
-                                          {"script", asset("page.js")}});
+                                          {"script", asset("page.js") + asset("report.js")}});
 }
 
 std::string write_report(const std::vector<std::string>& folders, const std::string& file, bool thumbnails) {

@@ -1,0 +1,105 @@
+// The instrument: map, curves and panels put together. The report and the live view have the same.
+
+function choice(label, words, chosen, change) {
+  const select = element("select", {onchange: () => change(select.value)},
+                         ...Object.entries(words).map(([value, text]) => element("option", {value, selected: value === chosen}, text)));
+  return element("label", {}, `${label} `, select);
+}
+
+function legend() {
+  return element("ul", {class: "legend"}, ...kKinds.map((kind) => {
+    const swatch = element("span", {class: "swatch"});
+    swatch.style.background = `var(--kind-${kind})`;
+    return element("li", {}, swatch, kKindWords[kind]);
+  }));
+}
+
+function setUpTheme(again) {
+  const button = document.getElementById("theme"), dark = matchMedia("(prefers-color-scheme: dark)");
+  const isDark = () => (document.documentElement.dataset.theme || (dark.matches ? "dark" : "light")) === "dark";
+  const say = () => (button.textContent = isDark() ? "Light" : "Dark");
+  button.hidden = false;
+  button.setAttribute("aria-label", "change between light and dark");
+  button.addEventListener("click", () => {
+    document.documentElement.dataset.theme = isDark() ? "light" : "dark";
+    say();
+    again();
+  });
+  dark.addEventListener("change", () => { say(); again(); });
+  say();
+}
+
+// The elements of the instrument, by name.
+function layOut(runs) {
+  const canvas = element("canvas", {id: "map", tabindex: "0", role: "img",
+    "aria-label": "Map of layers by frames. Arrows choose a layer and a frame, plus and minus zoom; the table below has the chosen layer's decisions in words."});
+  const parts = {canvas, tools: element("div", {class: "tools"}), curve: element("div", {id: "curve", role: "img"}),
+                 frame: element("section", {id: "frame", class: "panel", "aria-label": "frame"}),
+                 layers: element("section", {id: "layers-panel", class: "panel scrolls", tabindex: "0", "aria-label": "layers of the frame"}),
+                 properties: element("section", {id: "properties", class: "panel", "aria-label": "decision", "aria-live": "polite"}),
+                 spans: element("section", {id: "spans", class: "panel scrolls", tabindex: "0", "aria-label": "decisions of the layer"}),
+                 curveTools: element("div", {class: "tools"})};
+  document.getElementById("instrument").append(
+    element("div", {class: "left"}, parts.tools, element("div", {class: "map"}, canvas), legend(), parts.curveTools, parts.curve, parts.spans),
+    element("div", {class: "right"}, parts.frame, parts.properties, parts.layers));
+  return parts;
+}
+
+function addTools(parts, runs, map, curves) {
+  const again = () => { map.rebuild(); };
+  const modes = {reason: "reason", error: "error"};
+  if (runs.length > 1) modes.difference = "A against B";
+  const zoom = (text, label, act) => element("button", {type: "button", "aria-label": label, title: label, onclick: act}, text);
+  const middle = () => (map.shown.from + map.shown.to) / 2;
+  parts.tools.append(
+    ...(runs.length > 1 ? [choice("run", {0: `A: ${runs[0].folder}`, 1: `B: ${runs[1].folder}`}, "0", (v) => selection.set({run: Number(v)}))] : []),
+    choice("rows by", {cost: "cost", rate: "rate", error: "error", order: "order", name: "name"}, "cost", (v) => { map.by = v; again(); }),
+    choice("colours", modes, "reason", (v) => { map.mode = v; again(); }),
+    element("label", {}, "find ", element("input", {type: "search", id: "find", size: "10", oninput: (e) => { map.filter = e.target.value; again(); }})),
+    element("span", {class: "buttons"}, zoom("−", "see more frames", () => map.zoom(2, middle())), zoom("+", "see fewer frames", () => map.zoom(0.5, middle())),
+            zoom("all", "see all frames", () => map.show(map.whole.from, map.whole.to))));
+  const names = Object.fromEntries(curvesOf(runs[0]).map((key) => [key, kCurves[key].label]));
+  parts.curveTools.append(choice("curve", names, curves.key, (v) => { curves.key = v; curves.draw(); }), element("span", {id: "curve-legend"}));
+}
+
+class Instrument {
+  // Of runs that are open; `runs` may be given others later.
+  constructor(runs) {
+    this.parts = layOut(runs);
+    this.runs = runs;
+    this.map = new TimelineMap(this.parts.canvas, runs);
+    this.curves = new Curves(this.parts.curve, this.map);
+    this.curves.key = curvesOf(runs[0])[0];
+    addTools(this.parts, runs, this.map, this.curves);
+    this.frame = new FramePanel(this.parts.frame);
+    this.properties = new PropertiesPanel(this.parts.properties, runs);
+    this.layers = new LayersPanel(this.parts.layers, this.map);
+    this.spans = new SpansTable(this.parts.spans);
+    this.drawnRun = selection.run;
+    selection.listeners.push(() => this.draw());
+    addEventListener("hashchange", () => selection.set(selection.fromAddress(runs)));
+    new ResizeObserver(() => this.resize()).observe(this.parts.canvas.parentElement);
+    setUpTheme(() => this.redrawAll());
+  }
+  resize() {
+    this.map.paint();
+    if (this.curves.graph) this.curves.graph.resize(this.map.width, 110);
+  }
+  // What depends on the selection.
+  draw() {
+    const clicked = performance.now();
+    if (this.drawnRun !== selection.run) { this.drawnRun = selection.run; this.map.rebuild(); this.curves.draw(); }
+    this.map.reveal();
+    this.frame.draw(this.map.run);
+    this.properties.draw();
+    this.layers.draw();
+    this.spans.draw(this.map.run);
+    this.curves.mark();
+    document.body.dataset.click_ms = performance.now() - clicked;
+  }
+  redrawAll() {
+    this.map.rebuild();
+    this.curves.draw();
+    this.draw();
+  }
+}
