@@ -2,6 +2,7 @@
 #include "chunker/fragment.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -29,6 +30,63 @@ void insert_sorted(std::vector<SampleEntry>& entries, const SampleEntry& entry) 
   for (std::size_t i = entries.size() - 1; i > 0 && in_front(entries[i], entries[i - 1]); --i)
     std::swap(entries[i], entries[i - 1]);
 }
+
+using Int4 = std::int32_t __attribute__((vector_size(16)));
+
+Int4 chosen(Int4 where, Int4 a, Int4 b) { return (where & a) | (~where & b); }
+Float4 chosen(Int4 where, Float4 a, Float4 b) {
+  return std::bit_cast<Float4>(chosen(where, std::bit_cast<Int4>(a), std::bit_cast<Int4>(b)));
+}
+
+/// The nearest opaque surface in each sample, four samples at a time.
+template <int kCount>
+class NearestSurfaces {
+ public:
+  NearestSurfaces() {
+    depth_.fill(splat(-1));
+    order_.fill(Int4{});
+    surface_.fill(Int4{-1, -1, -1, -1});
+  }
+  void begin_with(const Fragment& base) {
+    const auto order = static_cast<std::int32_t>(base.order);
+    for (int group = 0; group < kGroups; ++group) {
+      depth_[group] = depths(base.depth, group);
+      order_[group] = Int4{order, order, order, order};
+    }
+  }
+  void add(const Fragment& fragment, std::int32_t surface) {
+    const auto order = static_cast<std::int32_t>(fragment.order);
+    const Int4 orders{order, order, order, order}, surfaces{surface, surface, surface, surface};
+    for (int group = 0; group < kGroups; ++group) {
+      const std::int32_t bits = fragment.mask >> (4 * group) & 15;
+      const Int4 here = (Int4{bits, bits, bits, bits} & Int4{1, 2, 4, 8}) != 0;
+      const Float4 depth = depths(fragment.depth, group);
+      const Int4 nearer = (depth > depth_[group]) | ((depth == depth_[group]) & (orders < order_[group]));
+      const Int4 take = here & nearer;
+      depth_[group] = chosen(take, depth, depth_[group]);
+      order_[group] = chosen(take, orders, order_[group]);
+      surface_[group] = chosen(take, surfaces, surface_[group]);
+    }
+  }
+  /// -1: the first one, or none.
+  std::int32_t surface(int sample) const { return surface_[sample / 4][sample % 4]; }
+
+ private:
+  static constexpr int kGroups = (kCount + 3) / 4;
+
+  /// depth_at() in the samples of a group; of one sample, in four equal lanes.
+  static Float4 depths(const DepthPlane& plane, int group) {
+    const auto at = [group](int lane) { return Samples<kCount>::place((4 * group + lane) % kCount); };
+    const Float4 x{sample_offset(at(0) & 3), sample_offset(at(1) & 3), sample_offset(at(2) & 3),
+                   sample_offset(at(3) & 3)};
+    const Float4 y{sample_offset(at(0) >> 2), sample_offset(at(1) >> 2), sample_offset(at(2) >> 2),
+                   sample_offset(at(3) >> 2)};
+    return (splat(plane.z) + splat(plane.dx) * x) + splat(plane.dy) * y;
+  }
+
+  std::array<Float4, kGroups> depth_;
+  std::array<Int4, kGroups> order_, surface_;
+};
 
 }  // namespace
 
@@ -140,7 +198,6 @@ Float4 FragmentBuffer<kCount>::resolve_busy(int texel) const {
 template <int kCount>
 bool FragmentBuffer<kCount>::fill_disjoint(int texel, Colors& samples) const {
   if (has_base(texel)) return false;
-  samples.fill(splat(0));
   unsigned covered = 0;
   for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next) {
     if (covered & pool_[i].mask) return false;
@@ -148,6 +205,7 @@ bool FragmentBuffer<kCount>::fill_disjoint(int texel, Colors& samples) const {
     for (unsigned left = pool_[i].mask; left != 0; left &= left - 1)
       samples[__builtin_ctz(left)] = pool_[i].color;
   }
+  for (unsigned left = kFull & ~covered; left != 0; left &= left - 1) samples[__builtin_ctz(left)] = splat(0);
   return true;
 }
 
@@ -155,20 +213,14 @@ template <int kCount>
 Float4 FragmentBuffer<kCount>::resolve_opaque(int texel) const {
   Colors samples;
   if (fill_disjoint(texel, samples)) return mean_of_samples(samples);
-  static const Fragment nothing;
-  const Fragment& base = base_[texel];
+  NearestSurfaces<kCount> nearest;
   const bool covered = has_base(texel);
-  std::array<SampleEntry, kCount> nearest;
-  for (int s = 0; s < kCount; ++s)
-    nearest[s] = covered ? SampleEntry{depth_at(base.depth, Samples<kCount>::place(s)), &base}
-                         : SampleEntry{-1, &nothing};
-  for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next)
-    for (unsigned left = pool_[i].mask; left != 0; left &= left - 1) {
-      const int s = __builtin_ctz(left);
-      const SampleEntry entry{depth_at(pool_[i].depth, Samples<kCount>::place(s)), &pool_[i]};
-      if (in_front(entry, nearest[s])) nearest[s] = entry;
-    }
-  for (int s = 0; s < kCount; ++s) samples[s] = nearest[s].surface->color;
+  if (covered) nearest.begin_with(base_[texel]);
+  for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next) nearest.add(pool_[i], i);
+  for (int s = 0; s < kCount; ++s) {
+    const std::int32_t surface = nearest.surface(s);
+    samples[s] = surface >= 0 ? pool_[surface].color : covered ? base_[texel].color : splat(0);
+  }
   return mean_of_samples(samples);
 }
 

@@ -133,13 +133,19 @@ class FragmentBuffer {
       entries_;  ///< of the texel that is being resolved; kept for their memory
 };
 
-/// Pairwise, so that equal samples give exactly their value.
+/// Pairwise; unrolled, it stays in registers.
+template <std::size_t kCount>
+Float4 sum_of_samples(const Float4* samples) {
+  if constexpr (kCount == 1)
+    return samples[0];
+  else
+    return sum_of_samples<kCount / 2>(samples) + sum_of_samples<kCount / 2>(samples + kCount / 2);
+}
+
+/// Equal samples give exactly their value.
 template <std::size_t kCount>
 Float4 mean_of_samples(const std::array<Float4, kCount>& samples) {
-  std::array<Float4, kCount> sum = samples;
-  for (std::size_t half = kCount / 2; half >= 1; half /= 2)
-    for (std::size_t i = 0; i < half; ++i) sum[i] = sum[2 * i] + sum[2 * i + 1];
-  return sum[0] * splat(1.0f / kCount);
+  return sum_of_samples<kCount>(samples.data()) * splat(1.0f / kCount);
 }
 
 }  // namespace talisman::chunker

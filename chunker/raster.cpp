@@ -8,6 +8,18 @@
 namespace talisman::chunker {
 namespace {
 
+/// What of depth_plane() and of a point's place does not change along a column of texels.
+struct ColumnTerms {
+  std::array<double, kChunkSize> depth;       ///< at the middle of the column, without the share of y
+  std::array<float, kChunkSize> from_corner;  ///< of the triangle's first, texels
+  ColumnTerms(const Triangle& t, const Gradients& gradients, int origin_x, const LatticeBox& box) {
+    for (int x = box.x0; x <= box.x1; ++x) {
+      from_corner[x] = chunker::from_corner(origin_x + x, t.x[0]);
+      depth[x] = t.depth[0] + gradients.depth_x * (static_cast<double>(from_corner[x]) + 0.5);
+    }
+  }
+};
+
 bool is_nothing(Float4 c) { return c[3] == 0 && c[0] == 0 && c[1] == 0 && c[2] == 0; }
 
 }  // namespace
@@ -107,19 +119,21 @@ void ChunkRenderer<kCount>::gather_visible(const Triangle& t, const Gradients& g
   int count = 0;
   depth_dx_ = static_cast<float>(gradients.depth_x);
   depth_dy_ = static_cast<float>(gradients.depth_y);
+  const ColumnTerms columns(t, gradients, origin_.x, box);
   for (int y = box.y0; y <= box.y1; ++y) {
     const float dy = from_corner(origin_.y + y, t.y[0]);
+    const double depth_of_row = gradients.depth_y * (static_cast<double>(dy) + 0.5);
     for (std::uint32_t left = coverage_.touched[y]; left != 0; left &= left - 1) {
       const int x = __builtin_ctz(left), texel = y * kChunkSize + x;
       const bool full = coverage_.full[y] >> x & 1;
       const std::uint16_t mask = full ? Samples<kCount>::kFull : coverage_.mask[texel];
-      const DepthPlane depth = depth_plane(t, gradients, origin_.x + x, origin_.y + y);
+      const DepthPlane depth{static_cast<float>(columns.depth[x] + depth_of_row), depth_dx_, depth_dy_};
       if (buffer_.hides(texel, mask, depth)) continue;
       const Centroid at = full ? Centroid{0.5f, 0.5f} : centroid_of<kCount>(mask);
       texel_[count] = static_cast<std::uint16_t>(texel);
       mask_[count] = mask;
       depth_[count] = depth.z;
-      batch_.dx[count] = from_corner(origin_.x + x, t.x[0]) + at.x;
+      batch_.dx[count] = columns.from_corner[x] + at.x;
       batch_.dy[count] = dy + at.y;
       ++count;
     }

@@ -21,6 +21,7 @@
 #include "sequences/commands/parse_error.h"
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/warps.h"
+#include "sequences/files/freed_memory.h"
 #include "sequences/pictures/diff.h"
 
 namespace {
@@ -66,6 +67,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) try {
+  keep_freed_memory();
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGINT, on_stop_signal);
   std::signal(SIGTERM, on_stop_signal);

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "chunker/reference.h"
+#include "sequences/files/freed_memory.h"
 #include "tests/bench/peers/ball.h"
 #include "tests/bench/peers/rounds.h"
 #include "tests/support/scenes.h"
@@ -146,6 +147,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: render_peers ROUNDS [TRIANGLES[/two-sided] ...]\n");
     return 2;
   }
+  talisman::sequences::keep_freed_memory();  // as the tool does; the peer is in the same process
   try {
     std::vector<std::string> jobs(argv + 2, argv + argc);
     if (jobs.empty()) jobs = {"5000", "70000"};
