@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+// What lies behind all else, of walls with cubes in front of them.
+#include "sequences/content/factoring/backdrops.h"
+
+#include <gmock/gmock.h>
+
+#include "tests/sequences/content/factoring/factored_scene.h"
+
+namespace talisman {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
+using tests::FactoredScene;
+
+/// A wall of two halves in the plane z = 0, which share an edge, and six cubes of 1 m that are sunk into it by 0.2 m.
+FactoredScene wall_with_cubes() {
+  FactoredScene s;
+  s.part("left", {-2, 0, 0}, -1, 1, {4, 8, 1});
+  s.part("right", {2, 0, 0}, -1, 1, {4, 8, 1});
+  for (int i = 0; i < 6; ++i)
+    s.part("cube" + std::to_string(i), {2.0 * (i % 3) - 2, i < 3 ? -2.0 : 2.0, 0.3});
+  return s;
+}
+
+std::vector<std::string> names_behind(const FactoredScene& s) {
+  const sequences::Pieces pieces = sequences::pieces_of(s.scene, {});
+  const sequences::DepthSamples depths(s.scene, pieces.layers, {0.0}, s.settings.view.display_px);
+  const std::vector<bool> behind = sequences::pieces_behind(s.scene, pieces, depths);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < behind.size(); ++i)
+    if (behind[i]) names.push_back(s.scene.parts[pieces.layers[i].parts.front()].name);
+  return names;
+}
+
+TEST(Backdrops, WallBehindCubesIsOneBodyOfItsHalves) {
+  EXPECT_THAT(names_behind(wall_with_cubes()), UnorderedElementsAre("left", "right"));
+}
+
+// A cube behind the wall: 0.2 m are 0.04 m² of the 6.04 m² and more at which wall and cubes are seen, 0.7 %; 0.6 m are
+// 0.36 of 6.36 m², 5.7 %. The limit is 1 %.
+TEST(Backdrops, WallMayHideALittle) {
+  FactoredScene s = wall_with_cubes();
+  s.part("hidden", {0, 0, -0.1}, -1, 0, tests::dvec3(0.2, 0.2, 0.1));
+  EXPECT_THAT(names_behind(s), UnorderedElementsAre("left", "right"));
+  FactoredScene larger = wall_with_cubes();
+  larger.part("hidden", {0, 0, -0.1}, -1, 0, tests::dvec3(0.6, 0.6, 0.1));
+  EXPECT_THAT(names_behind(larger), ElementsAre("hidden"));  // which is in front of nothing
+}
+
+// The sky touches nobody and is in front of nothing; the wall is in front of the sky alone.
+TEST(Backdrops, WhatLiesBehindIsNoObstacleToWhatIsBeforeIt) {
+  FactoredScene s = wall_with_cubes();
+  s.part("sky", {0, 0, -50}, -1, 1, {100, 100, 1});
+  EXPECT_THAT(names_behind(s), UnorderedElementsAre("left", "right", "sky"));
+}
+
+TEST(Backdrops, OneBodyAmongFewOthersIsNoBackdrop) {
+  FactoredScene s;
+  s.part("near", {0, 0, 1});
+  s.part("beside", {4, 4, 0});
+  EXPECT_THAT(names_behind(s), IsEmpty());
+}
+
+TEST(Backdrops, GroupsAreCutIntoBothSides) {
+  EXPECT_THAT(sequences::cut_by({true, false, true, false}, {{0, 1, 2}, {3}}),
+              UnorderedElementsAre(ElementsAre(0, 2), ElementsAre(1), ElementsAre(3)));
+}
+
+// The background is drawn first, and what it hides is said.
+TEST(Backdrops, ProposedLayersHaveABackgroundWhereThatIsCheaper) {
+  FactoredScene s = wall_with_cubes();
+  s.moves(s.eye(), {0.2, 0, 0});
+  const sequences::FactoringStudy study = s.study();
+  ASSERT_TRUE(study.chosen.has_background);
+  for (const layers::LayerSpec& spec : study.chosen.specs) {
+    const bool is_wall = spec.name.rfind("left", 0) == 0 || spec.name.rfind("right", 0) == 0;
+    EXPECT_EQ(spec.group, is_wall ? layers::OrderGroup::Background : layers::OrderGroup::Normal) << spec.name;
+  }
+}
+
+}  // namespace
+}  // namespace talisman
