@@ -55,6 +55,15 @@ bool is_around_many(const std::vector<layers::WorldBounds>& boxes, std::size_t b
   return met >= std::max<double>(kFewestAround, kMostlyAround * static_cast<double>(boxes.size() - 1));
 }
 
+/// Was it seen in front of nothing at all, not even of what lies behind?
+bool is_last(const DepthSamples& depths, const Body& body, int pieces) {
+  for (const int piece : body)
+    for (int other = 0; other < pieces; ++other)
+      if (!std::binary_search(body.begin(), body.end(), other) && depths.in_front(piece, other) > 0)
+        return false;
+  return true;
+}
+
 /// Pieces to which the order matters: not those of the body, nor those behind.
 Body others_than(const Body& body, const std::vector<bool>& behind, const Pieces& pieces) {
   Body others;
@@ -82,9 +91,8 @@ std::vector<bool> pieces_behind(const layers::Scene& scene, const Pieces& pieces
       const Body others = others_than(bodies[i], behind, pieces);
       const double in_front = pixels_in_front(depths, bodies[i], others);
       const double after = pixels_in_front(depths, others, bodies[i]);
-      const bool is_last = in_front == 0 && after > 0;
-      const bool is_mostly_last = after > 0 && in_front <= kHidden * (in_front + after);
-      if (!is_last && !(is_mostly_last && is_around_many(boxes, i))) continue;
+      const bool is_mostly_last = in_front <= kHidden * (in_front + after) && is_around_many(boxes, i);
+      if (after == 0 || !(is_mostly_last || is_last(depths, bodies[i], depths.pieces()))) continue;
       for (const int piece : bodies[i]) behind[piece] = true;
       any = true;
     }
