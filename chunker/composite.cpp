@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "chunker/blend_constants.h"
+#include "chunker/late_chunks.h"
 #include "chunker/sampling.h"
 #include "chunker/span_composite.h"
 #include "chunker/tile_reach.h"
@@ -25,6 +26,10 @@ using layers::RectI;
 
 static_assert(kRunPixels == kBandLines, "tiles are square");
 static_assert(sizeof(Linear16) == sizeof(PackedPixel));
+
+bool has_chunks_to_draw(const Sprite& sprite) {
+  return sprite.late_chunks() != nullptr && !sprite.late_chunks()->all_drawn();
+}
 
 /// A sprite that shows something, ready for sampling.
 struct Visible {
@@ -230,6 +235,16 @@ class BandCompositor {
     return counters_;
   }
 
+  /// Reads the late chunks that run() would read, and nothing else.
+  void read_late(int band) {
+    collect(band);
+    Tile tile{0, band * kBandLines, {frame_.width, frame_.height}, nullptr};
+    for (; tile.x < frame_.width; tile.x += kRunPixels) {
+      for (std::size_t i = lowest_shown(tile); i < touching_.size(); ++i)
+        if (touching_[i].may_touch(tile)) read_late(*touching_[i].visible, tile);
+    }
+  }
+
  private:
   struct Touching {
     const Visible* visible;
@@ -257,6 +272,23 @@ class BandCompositor {
       if (touching_[i].may_touch(tile) && hides(*touching_[i].visible, tile)) return i;
     }
     return 0;
+  }
+
+  static void read_late(const Visible& v, const Tile& tile) {
+    if (!has_chunks_to_draw(*v.sprite)) return;
+    TapBounds bounds;
+    if (v.map.perspective) {
+      PixelTaps taps;
+      locate_perspective(v, tile, taps);
+      bounds = taps.bounds;
+    } else {
+      bounds = affine_lines(v, tile).bounds;
+    }
+    if (bounds.rect.empty() || is_clear(*v.sprite, bounds.texels())) return;
+    // As Window::gather: with the row and column after.
+    for (int row = chunk_of(bounds.rect.y0); row <= chunk_of(bounds.rect.y1); ++row)
+      for (int column = chunk_of(bounds.rect.x0); column <= chunk_of(bounds.rect.x1); ++column)
+        chunk_or_clear(*v.sprite, column, row);
   }
 
   void lay(Touching& touching, const Tile& tile, bool hidden) {
@@ -365,18 +397,26 @@ class BandCompositor {
   alignas(64) std::array<PackedPixel, kBandLines * kRunPixels> tile_;
 };
 
+int bands_of(const Frame& frame) { return (frame.height + kBandLines - 1) / kBandLines; }
+
+/// Calls use(band's number, its compositor) for all bands of `frame`.
+template <typename Use>
+void for_each_band(Frame& frame, std::span<const PlacedSprite> sprites, std::optional<PackedPixel> background,
+                   const Use& use) {
+  const std::vector<Visible> visible = visible_sprites(sprites, {frame.width, frame.height});
+  const int bands = bands_of(frame);
+  tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
+    for (int band = range.begin(); band != range.end(); ++band)
+      use(band, *std::make_unique<BandCompositor>(visible, background, frame));
+  });
+}
+
 /// All bands of `frame`, whose pixels are there.
 CompositeCounters composite_bands(Frame& frame, std::span<const PlacedSprite> sprites,
                                   std::optional<PackedPixel> background) {
-  const std::vector<Visible> visible = visible_sprites(sprites, {frame.width, frame.height});
-  const int bands = (frame.height + kBandLines - 1) / kBandLines;
-  std::vector<CompositeCounters> counters(bands);
-  tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
-    for (int band = range.begin(); band != range.end(); ++band) {
-      const auto compositor = std::make_unique<BandCompositor>(visible, background, frame);
-      counters[band] = compositor->run(band);
-    }
-  });
+  std::vector<CompositeCounters> counters(bands_of(frame));
+  for_each_band(frame, sprites, background,
+                [&](int band, BandCompositor& compositor) { counters[band] = compositor.run(band); });
   CompositeCounters sum;
   for (const CompositeCounters& c : counters) sum += c;
   return sum;
@@ -409,6 +449,15 @@ CompositeCounters composite_into(Frame& frame, std::span<const PlacedSprite> spr
 CompositeCounters composite_onto(Frame& frame, std::span<const PlacedSprite> sprites) {
   TALISMAN_CHECK_EQ(frame.pixels.size(), static_cast<std::size_t>(frame.width) * frame.height);
   return composite_bands(frame, sprites, std::nullopt);
+}
+
+void draw_late_chunks(std::span<const PlacedSprite> sprites, ivec2 display_px) {
+  if (std::none_of(sprites.begin(), sprites.end(),
+                   [](const PlacedSprite& placed) { return has_chunks_to_draw(*placed.sprite); }))
+    return;
+  Frame frame{display_px.x, display_px.y, {}};
+  for_each_band(frame, sprites, std::nullopt,
+                [](int band, BandCompositor& compositor) { compositor.read_late(band); });
 }
 
 CompositeResult composite(std::span<const PlacedSprite> sprites, ivec2 display_px, layers::vec3 background) {

@@ -9,7 +9,7 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 
-#include "chunker/bin.h"
+#include "chunker/chunk_work.h"
 #include "chunker/clip.h"
 #include "chunker/raster.h"
 #include "layers/built_effects.h"
@@ -28,23 +28,6 @@ void check_options(const layers::SpritePlacement& placement, const RenderOptions
   TALISMAN_CHECK_GE(options.max_fragments_per_chunk, 16);
   TALISMAN_CHECK(options.merge_depth >= 0 && options.merge_color >= 0);
   TALISMAN_CHECK(options.max_anisotropy >= 1 && options.max_anisotropy <= 16);
-}
-
-/// The chunks in which there is something to draw.
-struct Work {
-  Bins bins;
-  std::vector<int> places;
-};
-
-Work set_up(const PreparedScene& prepared, const layers::SceneFrame& frame, std::span<const int> parts,
-            layers::ivec2 display_px, const layers::SpritePlacement& placement, const RenderOptions& options,
-            const ShadeInputs& inputs, DrawList& list) {
-  check_options(placement, options);
-  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
-  Work work{bin_triangles(list.triangles, list.size_px), {}};
-  for (int c = 0; c < work.bins.count(); ++c)
-    if (!work.bins.of(c).empty()) work.places.push_back(c);
-  return work;
 }
 
 /// The textures that parts use, and whether their coarser levels are needed: everywhere where they are
@@ -77,7 +60,7 @@ std::set<int> normal_textures_of(const layers::Scene& scene) {
 
 /// Draws every place; finished chunks go to `take(index of the place, chunk)`.
 template <int kCount, typename Take>
-RenderCounters draw_chunks(const DrawList& list, const Work& work, const RenderOptions& options,
+RenderCounters draw_chunks(const DrawList& list, const ChunkWork& work, const RenderOptions& options,
                            LinearImage* linear, const Take& take) {
   const std::vector<int>& places = work.places;
   const int columns = work.bins.chunks.x;
@@ -98,7 +81,7 @@ RenderCounters draw_chunks(const DrawList& list, const Work& work, const RenderO
 }
 
 template <typename Take>
-RenderCounters draw_chunks(const DrawList& list, const Work& work, const RenderOptions& options,
+RenderCounters draw_chunks(const DrawList& list, const ChunkWork& work, const RenderOptions& options,
                            LinearImage* linear, const Take& take) {
   return with_samples(options.samples, [&](auto count) {
     return draw_chunks<decltype(count)::value>(list, work, options, linear, take);
@@ -106,6 +89,18 @@ RenderCounters draw_chunks(const DrawList& list, const Work& work, const RenderO
 }
 
 }  // namespace
+
+ChunkWork set_up_chunks(const PreparedScene& prepared, const layers::SceneFrame& frame,
+                        std::span<const int> parts, layers::ivec2 display_px,
+                        const layers::SpritePlacement& placement, const RenderOptions& options,
+                        const ShadeInputs& inputs, DrawList& list) {
+  check_options(placement, options);
+  build_draw_list(prepared, frame, parts, display_px, placement, options, inputs, list);
+  ChunkWork work{bin_triangles(list.triangles, list.size_px), {}};
+  for (int c = 0; c < work.bins.count(); ++c)
+    if (!work.bins.of(c).empty()) work.places.push_back(c);
+  return work;
+}
 
 RenderCounters& RenderCounters::operator+=(const RenderCounters& o) {
   polygons_in += o.polygons_in;
@@ -125,7 +120,7 @@ RenderCounters& RenderCounters::operator+=(const RenderCounters& o) {
 }
 
 PreparedScene::PreparedScene(const layers::Scene& scene, const RenderOptions& options)
-    : impl_(std::make_unique<Impl>()) {
+    : impl_(std::make_shared<Impl>()) {
   impl_->scene = &scene;
   if (!layers::is_built(layers::Effect::Texture) || scene.textures.empty()) return;
   impl_->pyramids.resize(scene.textures.size());
@@ -162,7 +157,7 @@ RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& fra
                     const layers::SpritePlacement& placement, const RenderOptions& options,
                     const ShadeInputs& inputs) {
   DrawList list;
-  const Work work = set_up(prepared, frame, parts, display_px, placement, options, inputs, list);
+  const ChunkWork work = set_up_chunks(prepared, frame, parts, display_px, placement, options, inputs, list);
   std::vector<Chunk> chunks(work.places.size());
   RenderResult result;
   result.counters = draw_chunks(list, work, options, nullptr,
@@ -178,7 +173,7 @@ LinearImage render_linear(const PreparedScene& prepared, const layers::SceneFram
                           const layers::SpritePlacement& placement, const RenderOptions& options,
                           const ShadeInputs& inputs) {
   DrawList list;
-  const Work work = set_up(prepared, frame, parts, display_px, placement, options, inputs, list);
+  const ChunkWork work = set_up_chunks(prepared, frame, parts, display_px, placement, options, inputs, list);
   LinearImage image;
   image.size_px = list.size_px;
   image.texels.resize(static_cast<std::size_t>(list.size_px.x) * list.size_px.y);

@@ -94,9 +94,10 @@ class PreparedScene {
   std::int64_t texture_bytes() const;
   struct Impl;
   const Impl& impl() const { return *impl_; }
+  std::shared_ptr<const Impl> shared_impl() const { return impl_; }  ///< what is drawn late keeps it
 
  private:
-  std::unique_ptr<Impl> impl_;
+  std::shared_ptr<Impl> impl_;
 };
 
 class ShadowMap;  // chunker/shadow_map.h

@@ -5,17 +5,13 @@
 #include <cstring>
 #include <utility>
 
+#include "chunker/late_chunks.h"
 #include "layers/check.h"
 
 namespace talisman::chunker {
 namespace {
 
 constexpr int kClear = -1;
-
-bool is_clear(const Chunk& chunk) {
-  static const Chunk clear{};
-  return std::memcmp(&chunk, &clear, sizeof(Chunk)) == 0;
-}
 
 /// Two texels at a time; a block is opaque when the bits of all its alphas are set.
 using TexelPair = std::uint64_t;
@@ -24,6 +20,13 @@ TexelPair texel_pair(const Texel* texels) {
   TexelPair pair;
   std::memcpy(&pair, texels, sizeof pair);
   return pair;
+}
+
+}  // namespace
+
+bool is_clear_chunk(const Chunk& chunk) {
+  static const Chunk clear{};
+  return std::memcmp(&chunk, &clear, sizeof(Chunk)) == 0;
 }
 
 std::uint16_t opaque_blocks_of(const Chunk& chunk) {
@@ -40,8 +43,6 @@ std::uint16_t opaque_blocks_of(const Chunk& chunk) {
   }
   return opaque;
 }
-
-}  // namespace
 
 Sprite::Sprite(layers::ivec2 size_px) : size_px_(size_px) {
   TALISMAN_CHECK_GE(size_px.x, 0);
@@ -60,22 +61,38 @@ Sprite Sprite::assemble(layers::ivec2 size_px, std::span<const int> places, std:
   return sprite;
 }
 
+Sprite Sprite::late(layers::ivec2 size_px, std::span<const int> places, std::shared_ptr<LateChunks> chunks) {
+  TALISMAN_CHECK_EQ(static_cast<int>(places.size()), chunks->count());
+  Sprite sprite(size_px);
+  for (std::size_t i = 0; i < places.size(); ++i) sprite.reference_[places[i]] = static_cast<std::int32_t>(i);
+  sprite.late_ = std::move(chunks);
+  return sprite;
+}
+
+bool Sprite::may_hold(int column, int row) const {
+  TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
+  return reference_[static_cast<std::size_t>(row) * chunks_.x + column] != kClear;
+}
+
 const Chunk* Sprite::chunk(int column, int row) const {
   TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
   const std::int32_t index = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
+  if (late_ && index != kClear) return late_->chunk(index);
   return index == kClear ? nullptr : &storage_[index];
 }
 
 std::uint16_t Sprite::opaque_blocks(int column, int row) const {
   TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
   const std::int32_t index = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
+  if (late_ && index != kClear) return late_->opaque_blocks(index);
   return index == kClear ? std::uint16_t{0} : opaque_[index];
 }
 
 void Sprite::store(int column, int row, const Chunk& chunk) {
   TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
+  TALISMAN_CHECK(late_ == nullptr);
   std::int32_t& reference = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
-  if (is_clear(chunk)) {
+  if (is_clear_chunk(chunk)) {
     if (reference != kClear) release(reference);
     return;
   }
@@ -108,15 +125,17 @@ Texel Sprite::texel(int x, int y) const {
   return stored ? stored->texels[(y % kChunkSize) * kChunkSize + x % kChunkSize] : Texel{};
 }
 
-std::int64_t Sprite::stored_chunks() const { return static_cast<std::int64_t>(storage_.size()); }
+std::int64_t Sprite::stored_chunks() const {
+  return late_ ? late_->count() : static_cast<std::int64_t>(storage_.size());
+}
 
 std::int64_t Sprite::clear_chunks() const {
   return static_cast<std::int64_t>(reference_.size()) - stored_chunks();
 }
 
 std::int64_t Sprite::bytes() const {
-  return static_cast<std::int64_t>(storage_.size() * sizeof(Chunk) +
-                                   reference_.size() * sizeof(std::int32_t));
+  return stored_chunks() * static_cast<std::int64_t>(sizeof(Chunk)) +
+         static_cast<std::int64_t>(reference_.size() * sizeof(std::int32_t));
 }
 
 void SpriteStore::put(int layer, Sprite sprite) {

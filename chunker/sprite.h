@@ -5,6 +5,7 @@
 /// nothing was drawn is not stored. Byte counts are those of the stored chunks plus one reference per chunk.
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,13 @@ struct Chunk {
   Texel texels[kChunkSize * kChunkSize];
 };
 
+class LateChunks;  // chunker/late_chunks.h
+
+/// Has nothing of `chunk` a colour or alpha?
+bool is_clear_chunk(const Chunk& chunk);
+/// What Sprite::opaque_blocks says of it.
+std::uint16_t opaque_blocks_of(const Chunk& chunk);
+
 class Sprite {
  public:
   Sprite() = default;
@@ -27,10 +35,17 @@ class Sprite {
   /// are dropped.
   static Sprite assemble(layers::ivec2 size_px, std::span<const int> places, std::span<const Chunk> chunks);
 
+  /// A sprite whose chunks at `places`, ascending, are drawn when they are first read; the others are clear.
+  static Sprite late(layers::ivec2 size_px, std::span<const int> places, std::shared_ptr<LateChunks> chunks);
+  /// Null unless chunks are drawn late.
+  LateChunks* late_chunks() const { return late_.get(); }
+
   layers::ivec2 size_px() const { return size_px_; }
   layers::ivec2 chunks() const { return chunks_; }  ///< columns, rows
-  /// The stored chunk at (column, row), or null where it is clear.
+  /// The stored chunk at (column, row), or null where it is clear. A late one is drawn.
   const Chunk* chunk(int column, int row) const;
+  /// May something be stored at (column, row)? Draws nothing: a late chunk may turn out to be clear.
+  bool may_hold(int column, int row) const;
   /// Which 8×8 blocks of the chunk at (column, row) have alpha 255 in every texel: bit 4 · row + column of the
   /// block. A clear chunk has none. Known from the moment a chunk is stored, and no part of bytes().
   std::uint16_t opaque_blocks(int column, int row) const;
@@ -38,8 +53,8 @@ class Sprite {
   /// Not for several threads at once; those finish their chunks on their own and join them by `assemble`.
   void store(int column, int row, const Chunk& chunk);
 
-  Texel texel(int x, int y) const;  ///< clear outside
-  std::int64_t stored_chunks() const;
+  Texel texel(int x, int y) const;     ///< clear outside
+  std::int64_t stored_chunks() const;  ///< late ones that may hold something count, drawn or not
   std::int64_t clear_chunks() const;
   std::int64_t bytes() const;  ///< stored chunks and references
 
@@ -51,6 +66,7 @@ class Sprite {
   std::vector<std::int32_t> reference_;  ///< index into storage_, -1: clear
   std::vector<Chunk> storage_;
   std::vector<std::uint16_t> opaque_;  ///< opaque blocks of each stored chunk
+  std::shared_ptr<LateChunks> late_;   ///< has the chunks in the place of storage_; copies share it
 };
 
 /// The sprites that are alive, one per layer id.

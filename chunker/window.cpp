@@ -45,7 +45,7 @@ bool is_clear(const Sprite& sprite, const layers::RectI& texels) {
             last_row = std::min(chunk_of(texels.y1 - 1), chunks.y - 1);
   for (int row = first_row; row <= last_row; ++row) {
     for (int column = first_column; column <= last_column; ++column) {
-      if (sprite.chunk(column, row)) return false;
+      if (sprite.may_hold(column, row)) return false;
     }
   }
   return true;

@@ -38,7 +38,7 @@ class Window {
 /// The stored chunk at (column, row); null also outside the sprite.
 const Chunk* chunk_or_clear(const Sprite& sprite, int column, int row);
 
-/// Is nothing stored under `texels`?
+/// Is certainly nothing stored under `texels`?
 bool is_clear(const Sprite& sprite, const layers::RectI& texels);
 
 /// Are all of `texels` inside the sprite and in opaque 8×8 blocks?

@@ -148,6 +148,7 @@ void apply_order(const CommandLine& line, const Sequence& sequence, Settings& se
                      ", must be from 0 to " + std::to_string(layers::kMostMaterialPoints));
   settings.cycles = chosen("--cycles", line.cycles, kCyclesWords, sequence.cycles);
   settings.compositor = chosen("--compositor", line.compositor, kCompositorWords, sequence.compositor);
+  settings.late_chunks = chosen("--late-chunks", line.late_chunks, kSwitchWords, settings.late_chunks);
   if (settings.compositor == Compositor::Extended) return;
   for (const layers::Layer& layer : sequence.layers.layers)
     if (layer.shadows_as && layers::needs_registers(*layer.shadows_as))

@@ -124,6 +124,11 @@ void add_drawing(OptionGroup group, CommandLine& line) {
                shown(layers::PlacementOptions().resolution_scale));
   group.option("--compression", line.compression,
                "keep sprites compressed: quality 1 to 100 (about 10:1 at 85), 0: none", "0");
+  group.option("--late-chunks", line.late_chunks,
+               "on: a sprite's chunks are drawn when a frame first shows them: the same pictures in less "
+               "time, but the "
+               "counters leave out what was not drawn",
+               std::string(word_of(Settings().late_chunks, kSwitchWords)));
 }
 
 void add_pictures(CLI::App& command, CommandLine& line) {

@@ -82,6 +82,7 @@ struct FrameReport {
   std::vector<ShadowMapRow> shadow_maps;         ///< one per light that has a map
   double depth_complexity = 1;                   ///< by which a budget of ms was divided
   std::int64_t blended_pixels = 0;               ///< texels of third sprites, part of their layers' costs
+  chunker::RenderCounters late_chunks;           ///< drawn now, of sprites rendered for an earlier frame
   int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   StageTimes times;

@@ -45,6 +45,11 @@ struct Settings {
                    ///< policies that look ahead (Lookahead, Oracle), whose runs it ends
   bool budget_gap = false;  ///< Budget: also compute the best choice of each frame (regulator/budget.h);
                             ///< costs up to some ms a frame, and changes no decision
+  /// Chunks of sprites are drawn when a frame first shows them (chunker/late_chunks.h): the same pictures for
+  /// less. The counters, and the modelled time with them, are then of what was drawn, which is less than the
+  /// hardware of [LS97] would. Without effect where all of a sprite is looked at: compression, fades of fresh
+  /// sprites.
+  bool late_chunks = false;
 };
 
 /// What does not change during a run. Made by make_pipeline (sequences/pipeline/make_pipeline.h). It refers to

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "chunker/late_chunks.h"
 #include "chunker/mirror.h"
 #include "layers/animation.h"
 #include "layers/built_effects.h"
@@ -263,13 +264,14 @@ bool is_ratio(const Layer& layer) {
          needs_registers(*layer.shadows_as);
 }
 
-chunker::RenderResult draw(const Drawing& drawing, const Contents& contents,
-                           const SpritePlacement& placement) {
+/// `render`: chunker::render or render_late.
+chunker::RenderResult draw(const Drawing& drawing, const Contents& contents, const SpritePlacement& placement,
+                           decltype(chunker::render)* render = &chunker::render) {
   const LookedUp looked_up(drawing, contents, placement);
   const Settings& settings = drawing.pipeline.settings;
   chunker::RenderResult result =
-      chunker::render(drawing.prepared, drawing.frame, contents.parts, settings.view.display_px, placement,
-                      settings.render, looked_up.inputs());
+      render(drawing.prepared, drawing.frame, contents.parts, settings.view.display_px, placement,
+             settings.render, looked_up.inputs());
   looked_up.add_passes(result.counters);
   return result;
 }
@@ -283,6 +285,13 @@ chunker::RenderResult draw_layer(const Drawing& drawing, const Layer& layer,
     return {chunker::encode_sprite(image), image.counters};
   }
   return draw(drawing, contents_of(drawing.layers.set(), layer, drawing.frame.time_s), placement);
+}
+
+chunker::RenderResult draw_layer_late(const Drawing& drawing, const Layer& layer,
+                                      const SpritePlacement& placement) {
+  if (is_ratio(layer)) return draw_layer(drawing, layer, placement);
+  return draw(drawing, contents_of(drawing.layers.set(), layer, drawing.frame.time_s), placement,
+              &chunker::render_late);
 }
 
 chunker::LinearImage draw_layer_linear(const Drawing& drawing, const Layer& layer,

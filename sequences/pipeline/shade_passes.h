@@ -40,6 +40,10 @@ struct Drawing {
 chunker::RenderResult draw_layer(const Drawing& drawing, const layers::Layer& layer,
                                  const layers::SpritePlacement& placement);
 
+/// The same, chunks drawn when they are first read (chunker/late_chunks.h) where that can be.
+chunker::RenderResult draw_layer_late(const Drawing& drawing, const layers::Layer& layer,
+                                      const layers::SpritePlacement& placement);
+
 /// What draw_layer encodes, as it is before that. `blend`: factors of its two textures, in place of what its
 /// materials say.
 chunker::LinearImage draw_layer_linear(const Drawing& drawing, const layers::Layer& layer,

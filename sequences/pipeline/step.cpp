@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "chunker/late_chunks.h"
 #include "layers/animation.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
@@ -214,6 +215,12 @@ class Instants {
   std::map<std::pair<int, int>, SceneFrame> others_;
 };
 
+/// Does a frame look only at the chunks that it shows?
+bool draws_chunks_late(const Pipeline& pipeline) {
+  return pipeline.settings.late_chunks && compression_of(pipeline) == nullptr &&
+         pipeline.settings.regulator.blend_frames == 0;
+}
+
 /// Draws what is remembered of a layer: the picture of its own instant.
 chunker::RenderResult draw_remembered(const Pipeline& pipeline, PipelineState& state, Instants& instants,
                                       const chunker::PreparedScene& prepared, int layer,
@@ -223,8 +230,9 @@ chunker::RenderResult draw_remembered(const Pipeline& pipeline, PipelineState& s
   std::vector<HeldMap> held;
   for (const ShadowMapInstant& map : memory.maps)
     held.push_back({map.light, &instants.at(map.known, map.depicts_frame), map.resolution});
-  return draw_layer({pipeline, state.layers, state.shadow_maps, prepared, frame, held}, state.layers[layer],
-                    memory.placement);
+  const auto draw = draws_chunks_late(pipeline) ? &draw_layer_late : &draw_layer;
+  return draw({pipeline, state.layers, state.shadow_maps, prepared, frame, held}, state.layers[layer],
+              memory.placement);
 }
 
 /// Draws the sprites that fade out in this frame and were planned in frames that were not drawn.
@@ -264,20 +272,56 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
   draw_missing_fades(pipeline, state, instants, prepared, report);
 }
 
+/// The stack of a frame that needs no registers.
+std::vector<chunker::PlacedSprite> placed_sprites(const FrameReport& report,
+                                                  const chunker::SpriteStore& sprites,
+                                                  const BlendedSprites& blended) {
+  std::vector<chunker::PlacedSprite> placed;
+  placed.reserve(report.shown.size());
+  for (const ShownSprite& sprite : report.shown) placed.push_back(placed_sprite(sprite, sprites, blended));
+  return placed;
+}
+
+bool needs_registers(const FrameReport& report) {
+  return !report.order.resolved.empty() || any_registers(report.layers);
+}
+
+/// Draws the chunks that this frame shows and none before did. Those of a sprite that was rendered for this frame
+/// are counted with it.
+void draw_shown_chunks(const Pipeline& pipeline, const PipelineState& state, const BlendedSprites& blended,
+                       FrameReport& report) {
+  if (!draws_chunks_late(pipeline)) return;
+  const std::vector<chunker::PlacedSprite> stack = placed_sprites(report, state.sprites, blended);
+  const layers::ivec2 display_px = pipeline.settings.view.display_px;
+  if (needs_registers(report)) {  // what hides what is for its expressions to say
+    for (const chunker::PlacedSprite& sprite : stack) chunker::draw_late_chunks({&sprite, 1}, display_px);
+  } else {
+    chunker::draw_late_chunks(stack, display_px);
+  }
+  for (const ShownSprite& shown : report.shown) {
+    chunker::LateChunks* late = state.sprites.find(shown.layer)->late_chunks();
+    if (late == nullptr) continue;
+    const chunker::RenderCounters counters = late->rest();
+    if (state.memory[shown.layer].frame_rendered != report.frame) {
+      report.late_chunks += counters;
+      continue;
+    }
+    report.render += counters;
+    report.render_by_layer[shown.layer] += counters;
+  }
+}
+
 chunker::CompositeResult composite_shown(const Pipeline& pipeline, const FrameReport& report,
                                          const chunker::SpriteStore& sprites, const BlendedSprites& blended) {
   const layers::ivec2 display_px = pipeline.settings.view.display_px;
-  if (!report.order.resolved.empty() || any_registers(report.layers)) {
+  if (needs_registers(report)) {
     std::vector<LayerSprite> placed;
     for (const ShownSprite& sprite : report.shown)
       placed.push_back({sprite.layer, placed_sprite(sprite, sprites, blended),
                         report.layers[sprite.layer].base, use_of(report.layers[sprite.layer])});
     return composite_extended(placed, report.order, display_px, pipeline.scene.background);
   }
-  std::vector<chunker::PlacedSprite> placed;
-  placed.reserve(report.shown.size());
-  for (const ShownSprite& sprite : report.shown) placed.push_back(placed_sprite(sprite, sprites, blended));
-  return chunker::composite(placed, display_px, pipeline.scene.background);
+  return chunker::composite(placed_sprites(report, sprites, blended), display_px, pipeline.scene.background);
 }
 
 chunker::CacheCounters chunks_read(const Pipeline& pipeline, const FrameReport& report,
@@ -314,6 +358,7 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
     if (compression_of(pipeline)) report.compression.emplace();
     draw_missing_sprites(pipeline, state, now, prepared, report);
     const BlendedSprites blended = blended_sprites(state, report);
+    draw_shown_chunks(pipeline, state, blended, report);
     report.times.render_ms = render_watch.ms();
     const Stopwatch composite_watch;
     result = composite_shown(pipeline, report, state.sprites, blended);

@@ -30,6 +30,7 @@ void add_drawing(FrameLine& line, const FrameReport& report) {
   if (line.compression) line.times.compress_ms = line.compression->compress_ms;
   line.times.render_ms = report.times.render_ms;
   line.times.composite_ms = report.times.composite_ms;
+  line.times.late_pixels = report.late_chunks.pixels_filled;
   line.modelled_ms =
       regulator::modelled_time(regulator::talisman_1996(), line.polygons.rendered, line.pixels.filled,
                                line.pixels.composited + line.pixels.registers, line.upload_bytes.value_or(0))

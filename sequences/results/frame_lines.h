@@ -64,6 +64,8 @@ struct FrameTimes {
   double plan_ms = 0, render_ms = 0, composite_ms = 0, io_ms = 0;
   double sort_ms = 0;      ///< the visibility sort; part of plan_ms
   double compress_ms = 0;  ///< to compress, decompress and compare sprites; part of render_ms
+  std::int64_t late_pixels =
+      0;  ///< filled in late chunks of older sprites: depends on which frames were drawn
 };
 
 /// One frame in numbers: what lines of frames.jsonl and timing.jsonl hold.

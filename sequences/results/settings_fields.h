@@ -103,7 +103,7 @@ void render(RenderOptions& options, const Visit& visit) {
 template <typename AnySettings, typename Visit>
 void for_each_setting(AnySettings& settings, const Visit& visit) {
   auto& [regulator, curve, own_warps, fit, view, bound, material_points, extents, placement, render,
-         compression, explicit_order, cycles, compositor, fps, frames, budget_gap] = settings;
+         compression, explicit_order, cycles, compositor, fps, frames, budget_gap, late_chunks] = settings;
   auto& [display, clip_margin] = view;
   visit("display_px", display);
   visit("clip_margin", clip_margin);
@@ -122,6 +122,7 @@ void for_each_setting(AnySettings& settings, const Visit& visit) {
   visit("fps", fps);
   visit("sequence_frames", frames);
   visit("budget_gap", budget_gap);
+  visit("late_chunks", late_chunks);
 }
 
 }  // namespace talisman::sequences

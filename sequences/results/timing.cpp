@@ -54,7 +54,11 @@ std::vector<Column<FrameLine>> columns() {
               [](auto& l) -> auto& { return l.times.composite_ms; }),
           stage_time(
               "io_ms", "to write the picture, while the next frame is drawn; null: only planned", drawn,
-              [](auto& l) -> auto& { return l.times.io_ms; })};
+              [](auto& l) -> auto& { return l.times.io_ms; }),
+          stored<FrameLine>(
+              "late_pixels", "late_pixels", "px",
+              "filled in chunks that no frame had shown yet, of sprites drawn for earlier frames",
+              [](auto& l) -> auto& { return l.times.late_pixels; })};
 }
 
 const RowJson<FrameLine>& timing_row_json() {
