@@ -42,8 +42,8 @@ LatePlayback play_late(const layers::Scene& scene, const layers::LayerSet& layer
 
 LatePlayback expect_same_frames(const layers::Scene& scene, const layers::LayerSet& layers,
                                 const Settings& settings, int every = 1) {
-  const LatePlayback off = play_late(scene, layers, settings, false, every),
-                     on = play_late(scene, layers, settings, true, every);
+  const LatePlayback off = play_late(scene, layers, settings, false, every);
+  LatePlayback on = play_late(scene, layers, settings, true, every);
   EXPECT_EQ(on.hashes, off.hashes);
   EXPECT_EQ(on.decisions, off.decisions);
   EXPECT_LE(on.filled, off.filled);
