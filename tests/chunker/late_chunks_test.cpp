@@ -74,7 +74,8 @@ TEST(LateChunks, AllOfThemCountWhatIsCountedAtOnce) {
 
 TEST(LateChunks, ManyReadersOfOneChunkSeeTheSameBytes) {
   // A wide sprite of few chunks, all read by every task: most find a chunk that another one draws.
-  const auto [at_once, late] = draw_both(talisman::tests::displaced_sphere_scene(20000));
+  const BothWays both = draw_both(talisman::tests::displaced_sphere_scene(20000));
+  const RenderResult &late = both.late, &at_once = both.at_once;  // bindings cannot be captured
   tbb::parallel_for(0, 64, [&](int) {
     for (int row = 0; row < late.sprite.chunks().y; ++row)
       for (int column = 0; column < late.sprite.chunks().x; ++column) {
