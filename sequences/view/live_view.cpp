@@ -99,7 +99,7 @@ std::shared_ptr<LiveView::TabPlan> LiveView::plan_of(const ViewRequest& request)
   made->tab = request.tab;
   made->key = request.plan_key();
   made->settings_key = settings.plan_key();
-  const auto kept = kept_plan(request.tab);
+  auto kept = kept_plan(request.tab);
   if (kept && kept->key == made->key) return kept;
   if (kept && kept->settings_key == made->settings_key) {  // another flight through the same scene
     const std::unique_lock idle(kept->mutex, std::try_to_lock);

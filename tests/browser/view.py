@@ -1,21 +1,15 @@
 #!/usr/bin/python3
 """Opens the live view in headless Chromium: sliders make the plan that `plan` prints, an invalid value is said beside its
-control, the camera is dragged and saved. With --measure also its times and its memory. usage: view.py TALISMAN OUT
-[--measure SEQUENCE...]"""
+control, the camera is dragged and saved. usage: view.py TALISMAN OUT"""
 import contextlib
 import json
-import os
 import pathlib
-import random
 import re
 import shutil
 import signal
-import statistics
 import subprocess
 import sys
-import threading
 import time
-import urllib.request
 
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.support.ui import Select

@@ -83,9 +83,9 @@ httplib::Server::HandlerResponse guard(const Gate& gate, const httplib::Request&
 void add_routes(httplib::Server& server, const std::vector<HttpRoute>& routes) {
   for (const HttpRoute& route : routes) {
     const auto answer = [&route](const httplib::Request& request, httplib::Response& response) {
-      ViewAnswer given = route.answer(request.body);
+      const ViewAnswer given = route.answer(request.body);
       response.status = given.status;
-      response.set_content(std::move(given.body), given.type);
+      response.set_content(given.body, given.type);
     };
     if (route.method == "GET")
       server.Get(route.path, answer);

@@ -5,6 +5,7 @@
 #include <atomic>
 
 #include "sequences/commands/run_words.h"
+#include "sequences/results/report/page_assets.h"
 #include "sequences/view/live_view.h"
 #include "tests/sequences/commands/tool.h"
 
@@ -236,6 +237,7 @@ TEST_F(View, ASceneThatCannotBeReadIsAFault) {
 }
 
 TEST_F(View, EndsOnCtrlC) {
+  if (!has_report()) GTEST_SKIP() << "this build has no live view";
   write("wait.sh", "'" + tool() +
                        "' view passing.yaml > said & pid=$!\n"
                        "while ! grep -q token said; do sleep 0.01; done\nkill -INT $pid\nwait $pid\n");

@@ -107,7 +107,7 @@ class Server : public testing::Test {
   std::string ask(const std::string& bytes) const {
     const int socket = connected();
     send(socket, bytes);
-    const std::string text = answer(socket);
+    std::string text = answer(socket);
     ::close(socket);
     return text;
   }
