@@ -91,7 +91,7 @@ struct CapturedFrame {
   std::vector<layers::LayerState> states;                          ///< by layer id
   std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
   int generation = -1;  ///< OrderMemory::generation: aggregates that exist since then are not captured yet
-  std::vector<ShadowMapKey> shadow_maps;  ///< by light; empty where no shadow is called for
+  std::vector<ShadowMapKey> shadow_maps;   ///< by light; empty where no shadow is called for
   std::vector<layers::LightState> lights;  ///< of the scene
 };
 
