@@ -27,6 +27,9 @@ constexpr double kSharedShare = 0.9;
 /// What is joined may meet others; what is split may be split again.
 constexpr int kJoinRounds = 2, kSplitRounds = 2;
 
+/// What a factoring with a background may cost of one without.
+constexpr double kWorthABackground = 0.8;
+
 using Groups = std::vector<std::vector<int>>;
 
 std::vector<double> times_of(const std::vector<int>& frames, double fps) {
@@ -59,6 +62,11 @@ Groups groups_by_node(const layers::Scene& scene, const Pieces& pieces, const Pi
   return groups;
 }
 
+/// By which factorings are compared: a background, which may be drawn behind what it hides, must be worth it.
+double dearness_ms(const Factoring& f) {
+  return f.plan.work_ms() / (f.has_background ? kWorthABackground : 1);
+}
+
 class Study {
  public:
   Study(const Unfactored& scene, const AutoLayers& options)
@@ -80,7 +88,7 @@ class Study {
     std::vector<Factoring> all = by_node || !data_ ? by_nodes() : by_velocity();
     FactoringStudy result;
     const auto best = std::min_element(all.begin(), all.end(), [](const Factoring& a, const Factoring& b) {
-      return a.plan.work_ms() < b.plan.work_ms();
+      return dearness_ms(a) < dearness_ms(b);
     });
     result.chosen = std::move(*best);
     all.erase(best);
@@ -221,12 +229,14 @@ class Study {
     if (any_behind())
       for (const Groups& start : {alone(), bodies, nodes_}) {
         const Groups cut = cut_by(behind_, start);
-        add_by_velocity(grouped(data(true), {options_.max, false}, cut), true, all);
-        if (cut.size() <= static_cast<std::size_t>(options_.max)) add_once(cut, true, all);
+        const auto most = static_cast<std::size_t>(options_.max);
+        const Groups joined = grouped(data(true), {options_.max, false}, cut);
+        if (joined.size() <= most) add_by_velocity(joined, true, all);  // both sides may be too many
+        if (cut.size() <= most) add_once(cut, true, all);
       }
     for (int round = 0; round < kSplitRounds; ++round) {
       const auto best = std::min_element(all.begin(), all.end(), [](const Factoring& a, const Factoring& b) {
-        return a.plan.work_ms() < b.plan.work_ms();
+        return dearness_ms(a) < dearness_ms(b);
       });
       const bool background = best->has_background;
       if (!add_once(split_where_cheaper(*best, bodies), background, all)) break;

@@ -78,17 +78,5 @@ TEST(Backdrops, GroupsAreCutIntoBothSides) {
               UnorderedElementsAre(ElementsAre(0, 2), ElementsAre(1), ElementsAre(3)));
 }
 
-// The background is drawn first, and what it hides is said.
-TEST(Backdrops, ProposedLayersHaveABackgroundWhereThatIsCheaper) {
-  FactoredScene s = wall_with_cubes();
-  s.moves(s.eye(), {0.2, 0, 0});
-  const sequences::FactoringStudy study = s.study();
-  ASSERT_TRUE(study.chosen.has_background);
-  for (const layers::LayerSpec& spec : study.chosen.specs) {
-    const bool is_wall = spec.name.rfind("left", 0) == 0 || spec.name.rfind("right", 0) == 0;
-    EXPECT_EQ(spec.group, is_wall ? layers::OrderGroup::Background : layers::OrderGroup::Normal) << spec.name;
-  }
-}
-
 }  // namespace
 }  // namespace talisman
