@@ -125,6 +125,22 @@ class Study {
     return groups;
   }
 
+  /// The nodes, and of what lies behind a group for each piece: one warp does not carry a land.
+  Groups nodes_on_tiles() const {
+    Groups groups;
+    for (const std::vector<int>& node : nodes_) {
+      std::vector<int> before;
+      for (const int piece : node)
+        if (behind_[piece])
+          groups.push_back({piece});
+        else
+          before.push_back(piece);
+      groups.push_back(std::move(before));
+    }
+    std::erase_if(groups, [](const std::vector<int>& group) { return group.empty(); });
+    return groups;
+  }
+
   std::vector<int> everything() const {
     std::vector<int> all(pieces_.free);
     std::iota(all.begin(), all.end(), 0);
@@ -227,7 +243,7 @@ class Study {
     for (const Groups& start : {alone(), bodies, nodes_})
       add_by_velocity(grouped(data(), {options_.max, false}, start), false, all);
     if (any_behind())
-      for (const Groups& start : {alone(), bodies, nodes_}) {
+      for (const Groups& start : {alone(), bodies, nodes_, nodes_on_tiles()}) {
         const Groups cut = cut_by(behind_, start);
         const auto most = static_cast<std::size_t>(options_.max);
         const Groups joined = grouped(data(true), {options_.max, false}, cut);
