@@ -114,7 +114,7 @@ std::string name_of(const layers::Scene& scene, const Pieces& pieces, const std:
                     const std::vector<int>& parts, const Pieces& nodes) {
   for (std::size_t i = 0; i < nodes.free; ++i)
     if (nodes.layers[i].parts == parts && !nodes.layers[i].name.empty()) return nodes.layers[i].name;
-  const std::string common = group.size() > 1 ? common_node(scene, parts) : "";
+  std::string common = group.size() > 1 ? common_node(scene, parts) : "";
   if (!common.empty()) return common;
   const int largest = *std::max_element(group.begin(), group.end(), [&](int a, int b) {
     return pieces.layers[a].polygons < pieces.layers[b].polygons;
@@ -130,7 +130,7 @@ Pieces pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept) {
   std::set<std::string> seen;
   for (const layers::Part& part : scene.parts)
     if (seen.insert(part.name).second) own.emplace_back().part_globs = {glob_of(part.name)};
-  return pieces_between(scene, kept, std::move(own));
+  return pieces_between(scene, kept, own);
 }
 
 Pieces node_pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept,
