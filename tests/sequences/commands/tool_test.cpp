@@ -288,9 +288,8 @@ TEST_F(Tool, AloneListsItsCommandsAndHasDoneNothing) {
 
 TEST_F(Tool, MisspeltCommandsAndOptionsAreAnsweredWithWhatIsNear) {
   expect_bad_input("rendr cube.obj", {"'rendr' is no command; did you mean 'render'?"});
-  expect_bad_input(
-      "frobnicate",
-      {"'frobnicate' is no command; must be one of render, plan, audit, explain, view, tune, compare, inspect"});
+  expect_bad_input("frobnicate", {"'frobnicate' is no command; must be one of render, plan, audit, explain, "
+                                  "view, tune, compare, inspect"});
   expect_bad_input("plan cube.obj --geometrc-px 3", {"--geometrc-px", "did you mean '--geometric-px'?"});
   expect_bad_input("plan cube.obj --szie=64x48", {"'--szie' is no option of plan; did you mean '--size'?"});
   expect_bad_input("--versoin", {"'--versoin' is no option; did you mean '--version'?"});

@@ -108,8 +108,9 @@ TEST(FrameLine, TimesAreInTheLinesOfTheirOwnFile) {
 TEST(Timing, LinesOfFramesThatWereOnlyPlannedHaveNullForTheRest) {
   FrameLine line = drawn_line(7);
   line.frame_hash.clear();
-  EXPECT_EQ(timing_json(line), R"({"schema":"talisman.timing/1","frame":7,"plan_ms":0.25,"sort_ms":null,)"
-                               R"("render_ms":null,"compress_ms":null,"composite_ms":null,"io_ms":null,"late_pixels":0})");
+  EXPECT_EQ(timing_json(line),
+            R"({"schema":"talisman.timing/1","frame":7,"plan_ms":0.25,"sort_ms":null,)"
+            R"("render_ms":null,"compress_ms":null,"composite_ms":null,"io_ms":null,"late_pixels":0})");
 }
 
 TEST(Timing, LinesOfOtherKindsAreToldApart) {
