@@ -141,6 +141,19 @@ void clip_to_crossed(std::span<const HalfSpace> half_spaces, unsigned crossed, P
   if (current->count > 0) visit({current->vertices.data(), static_cast<std::size_t>(current->count)});
 }
 
+/// The vertices of the clipped surface, each once; its polygons are shown to `also`.
+template <typename Also>
+std::vector<MaterialPoint> vertices_of_surface(std::span<const std::array<int, 3>> triangles,
+                                               std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
+                                               std::span<const HalfSpace> half_spaces, const Also& also) {
+  PointSet points(clip_0.size());
+  clip_polygons(triangles, clip_0, clip_1, half_spaces, [&](std::span<const MaterialPoint> polygon) {
+    for (const MaterialPoint& vertex : polygon) points.add(vertex);
+    also(polygon);
+  });
+  return points.take();
+}
+
 }  // namespace
 
 ViewHalfSpaces view_half_spaces(double near_m, dvec2 clip_margin, int state) {
@@ -191,11 +204,7 @@ void clip_polygons(std::span<const std::array<int, 3>> triangles, std::span<cons
 std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> triangles,
                                         std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
                                         std::span<const HalfSpace> half_spaces) {
-  PointSet points(clip_0.size());
-  clip_polygons(triangles, clip_0, clip_1, half_spaces, [&](std::span<const MaterialPoint> polygon) {
-    for (const MaterialPoint& vertex : polygon) points.add(vertex);
-  });
-  return points.take();
+  return vertices_of_surface(triangles, clip_0, clip_1, half_spaces, [](std::span<const MaterialPoint>) {});
 }
 
 void PolygonList::reserve(std::size_t polygons) {
@@ -217,13 +226,9 @@ std::span<const MaterialPoint> PolygonList::operator[](std::size_t i) const {
 std::vector<MaterialPoint> clip_surface(std::span<const std::array<int, 3>> triangles,
                                         std::span<const dvec4> clip_0, std::span<const dvec4> clip_1,
                                         std::span<const HalfSpace> half_spaces, PolygonList& polygons) {
-  PointSet points(clip_0.size());
   polygons.reserve(triangles.size());
-  clip_polygons(triangles, clip_0, clip_1, half_spaces, [&](std::span<const MaterialPoint> polygon) {
-    for (const MaterialPoint& vertex : polygon) points.add(vertex);
-    polygons.push(polygon);
-  });
-  return points.take();
+  return vertices_of_surface(triangles, clip_0, clip_1, half_spaces,
+                             [&](std::span<const MaterialPoint> polygon) { polygons.push(polygon); });
 }
 
 }  // namespace talisman::layers

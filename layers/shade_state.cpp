@@ -66,6 +66,7 @@ bool is_highlight(const Layer& layer) {
 /// what makes its traces is its points, as long as no plane is theirs.
 class Rest {
  public:
+  Rest() = default;  ///< nothing casts: nobody asks
   Rest(const SceneFrame& frame, const LayerSet& set, std::span<const LayerState> states,
        const KnownInfluences& known)
       : known_(known), layers_(states.size(), 0), lights_(frame.lights.size(), 0) {
@@ -92,7 +93,7 @@ class Rest {
     return a.layer == b.layer && a.world_points == b.world_points && a.world_from_part == b.world_from_part;
   }
 
-  const KnownInfluences& known_;
+  KnownInfluences known_;
   std::vector<char> layers_, lights_;  ///< by id
 };
 
@@ -379,9 +380,10 @@ LayerState shade_state(const LayerState& base, const Layer& shade) {
 
 void capture_influences(const SceneFrame& frame, const LayerSet& set, std::span<LayerState> states,
                         const KnownInfluences& known) {
-  std::vector<dmat4> casters;
-  if (is_built(Effect::ShadowMap)) casters = part_matrices(frame, set.casting_parts);
-  const Rest rest(frame, set, states, known);
+  const bool any_shadow = is_built(Effect::ShadowMap) && !set.casting_parts.empty();
+  const std::vector<dmat4> casters =
+      any_shadow ? part_matrices(frame, set.casting_parts) : std::vector<dmat4>{};
+  const Rest rest = any_shadow ? Rest(frame, set, states, known) : Rest();
   for (const Layer& layer : set.layers) {
     LayerState& state = states[layer.id];
     if (state.layer != layer.id) continue;  // an aggregate that does not exist now

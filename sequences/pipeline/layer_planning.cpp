@@ -217,7 +217,7 @@ const std::vector<LayerState>& captured_states(const Pipeline& pipeline, Pipelin
     capture_motion(pipeline, state.layers, scene_as_known(pipeline, state, other_frame(pipeline, frame)),
                    frame, captured.states);
   layers::capture_influences(*scene_frame, state.layers.set(), captured.states, known_beside(state, frame));
-  captured.lights = scene_frame->lights;
+  if (any_shadows(state.layers.set())) captured.lights = scene_frame->lights;
   captured.shadow_maps = shadow_map_keys(pipeline.scene, state.layers.set(), *scene_frame);
   return captured.states;
 }
