@@ -5,9 +5,9 @@
 #include <filesystem>
 
 #include "layers/scene.h"
-#include "sequences/files/atomic_file.h"
+#include "sequences/content/starter/yaml_page.h"
+#include "sequences/files/errors.h"
 #include "sequences/files/folders.h"
-#include "sequences/files/number_text.h"
 
 namespace talisman::sequences {
 
@@ -16,36 +16,18 @@ namespace {
 constexpr const char* kFlownNode = "camera of the live view";
 constexpr std::size_t kLongestName = 64;
 
-std::string triple(const layers::dvec3& v) {
-  return "[" + number_text("%.17g", v.x) + ", " + number_text("%.17g", v.y) + ", " +
-         number_text("%.17g", v.z) + "]";
-}
-
-/// A text in YAML, whatever it holds.
-std::string quoted_yaml(const std::string& text) {
-  std::string quoted = "\"";
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20)
-      quoted += std::string("\\x") + "0123456789abcdef"[byte >> 4] + "0123456789abcdef"[byte & 15];
-    else
-      quoted += c == '"' || c == '\\' ? std::string("\\") + c : std::string(1, c);
-  }
-  return quoted + "\"";
-}
-
 std::string flight_yaml(const ViewSource& source, const layers::Camera& camera, double fps,
                         const ViewRequest& request) {
-  std::string text = "# A flight recorded in the live view of " + quoted_yaml(source.name) + "\n";
-  text += "extends: " + quoted_yaml(std::filesystem::absolute(source.base).string()) + "\n";
-  text += "name: " + quoted_yaml(request.name) + "\nframes: " + std::to_string(request.flight.size()) + "\n";
-  text += "camera:\n  fov_deg: " + number_text("%.17g", glm::degrees(camera.fov_y_rad)) +
-          "\n  near_m: " + number_text("%.17g", camera.near_m) +
-          "\n  far_m: " + number_text("%.17g", camera.far_m) + "\n  flight:\n";
+  std::string text = "# A flight recorded in the live view of " + yaml_text(source.name) + "\n";
+  text += "extends: " + yaml_text(std::filesystem::absolute(source.base).string()) + "\n";
+  text += "name: " + yaml_text(request.name) + "\nframes: " + std::to_string(request.flight.size()) + "\n";
+  text += "camera:\n  fov_deg: " + yaml_number(glm::degrees(camera.fov_y_rad)) +
+          "\n  near_m: " + yaml_number(camera.near_m) + "\n  far_m: " + yaml_number(camera.far_m) +
+          "\n  flight:\n";
   for (std::size_t f = 0; f < request.flight.size(); ++f)
-    text += "    - {t: " + number_text("%.17g", static_cast<double>(f) / fps) +
-            ", position: " + triple(request.flight[f].position) +
-            ", target: " + triple(request.flight[f].target) + "}\n";
+    text += "    - {t: " + yaml_number(static_cast<double>(f) / fps) +
+            ", position: " + yaml_vector(request.flight[f].position) +
+            ", target: " + yaml_vector(request.flight[f].target) + "}\n";
   return text;
 }
 
@@ -88,8 +70,9 @@ std::string save_flight(const ViewSource& source, const layers::Camera& camera, 
   if (!file) throw InputError("cannot be made, must be a new name", path);
   const std::string text = flight_yaml(source, camera, fps, request);
   const bool written = std::fwrite(text.data(), 1, text.size(), file) == text.size();
-  if (std::fclose(file) != 0 || !written) throw OutputError(path + ": cannot be written");
-  return path;
+  if (std::fclose(file) == 0 && written) return path;
+  std::remove(path.c_str());
+  throw OutputError(path + ": cannot be written");
 }
 
 }  // namespace talisman::sequences
