@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "chunker/late_chunks.h"
 
+#include <algorithm>
 #include <atomic>
 #include <memory>
 #include <mutex>

@@ -83,17 +83,7 @@ void run_job(const std::string& name, int rounds) {
 }  // namespace talisman::bench
 
 int main(int argc, char** argv) {
-  const int rounds = argc > 1 ? std::atoi(argv[1]) : 0;
-  if (rounds < 1) {
-    std::fprintf(stderr, "usage: composite_peers ROUNDS [SPRITES/DEPTH[/unwarped] ...]\n");
-    return 2;
-  }
-  try {
-    std::vector<std::string> jobs(argv + 2, argv + argc);
-    if (jobs.empty()) jobs = {"80/4", "119/4"};
-    for (const std::string& job : jobs) talisman::bench::run_job(job, rounds);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "error: composite_peers: %s\n", e.what());
-    return 2;
-  }
+  return talisman::bench::run_program({argv, static_cast<std::size_t>(argc)}, "composite_peers",
+                                      "SPRITES/DEPTH[/unwarped]", {"80/4", "119/4"},
+                                      talisman::bench::run_job);
 }

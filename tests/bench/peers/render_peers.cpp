@@ -142,18 +142,7 @@ void run_job(const std::string& name, int rounds) {
 }  // namespace talisman::bench
 
 int main(int argc, char** argv) {
-  const int rounds = argc > 1 ? std::atoi(argv[1]) : 0;
-  if (rounds < 1) {
-    std::fprintf(stderr, "usage: render_peers ROUNDS [TRIANGLES[/two-sided] ...]\n");
-    return 2;
-  }
   talisman::sequences::keep_freed_memory();  // as the tool does; the peer is in the same process
-  try {
-    std::vector<std::string> jobs(argv + 2, argv + argc);
-    if (jobs.empty()) jobs = {"5000", "70000"};
-    for (const std::string& job : jobs) talisman::bench::run_job(job, rounds);
-  } catch (const std::exception& e) {
-    std::fprintf(stderr, "error: render_peers: %s\n", e.what());
-    return 2;
-  }
+  return talisman::bench::run_program({argv, static_cast<std::size_t>(argc)}, "render_peers",
+                                      "TRIANGLES[/two-sided]", {"5000", "70000"}, talisman::bench::run_job);
 }

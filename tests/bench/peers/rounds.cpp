@@ -5,7 +5,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <ctime>
+#include <exception>
 #include <iterator>
 #include <utility>
 
@@ -75,6 +77,24 @@ Agreement compare_bytes(const std::vector<unsigned char>& a, const std::vector<u
   char words[64];
   std::snprintf(words, sizeof words, "%.1f dB, worst %d", db, worst);
   return {db >= least_db, words};
+}
+
+int run_program(std::span<char* const> arguments, const std::string& program, const std::string& job_in_words,
+                const std::vector<std::string>& fallback,
+                const std::function<void(const std::string& job, int rounds)>& run_job) {
+  const int rounds = arguments.size() > 1 ? std::atoi(arguments[1]) : 0;
+  if (rounds < 1) {
+    std::fprintf(stderr, "usage: %s ROUNDS [%s ...]\n", program.c_str(), job_in_words.c_str());
+    return 2;
+  }
+  try {
+    std::vector<std::string> jobs(arguments.begin() + 2, arguments.end());
+    for (const std::string& job : jobs.empty() ? fallback : jobs) run_job(job, rounds);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "error: %s: %s\n", program.c_str(), error.what());
+    return 2;
+  }
+  return 0;
 }
 
 std::function<void()> on_threads(int threads, std::function<void()> f) {

@@ -8,6 +8,7 @@
 /// more than the clock. One JSON line per contender goes to the standard output, tests/bench/run makes the table.
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,11 @@ void run_rounds(const Job& job, const std::vector<Contender>& contenders, int ro
 /// `least_db`.
 Agreement compare_bytes(const std::vector<unsigned char>& a, const std::vector<unsigned char>& b,
                         double least_db);
+
+/// The program PROGRAM ROUNDS [JOB ...]: runs each job, `fallback` where none is named; 2 where that cannot be done.
+int run_program(std::span<char* const> arguments, const std::string& program, const std::string& job_in_words,
+                const std::vector<std::string>& fallback,
+                const std::function<void(const std::string& job, int rounds)>& run_job);
 
 /// Limits the tasks of oneTBB to `threads` while it runs `f`.
 std::function<void()> on_threads(int threads, std::function<void()> f);
