@@ -65,7 +65,7 @@ std::string save_flight(const ViewSource& source, const layers::Camera& camera, 
     throw InputError("a flight is saved for a sequence file; talisman init makes one of a model");
   if (request.flight.size() < 2) throw InputError("a flight must have at least two frames");
   create_folder(source.out);
-  const std::string path = source.out + "/" + request.name + ".yaml";
+  std::string path = source.out + "/" + request.name + ".yaml";
   std::FILE* const file = std::fopen(path.c_str(), "wx");  // new files alone
   if (!file) throw InputError("cannot be made, must be a new name", path);
   const std::string text = flight_yaml(source, camera, fps, request);
