@@ -61,11 +61,19 @@ class Display {
   explicit Display(const LayerState& now)
       : clip_from_world_(layers::clip_from_world(now.camera, now.view.display_px)),
         sides_(layers::view_half_spaces(now.camera.near_m, 0, 0)) {}
-  bool shows(const dvec3& p) const {
-    return layers::outcode(sides_, clip_from_world_ * layers::dvec4(p, 1)) == 0;
+  bool shows(const dvec3& p) const { return outcode(p) == 0; }
+  /// False: all of the points lie beyond one side of the display, and with them what lies between them.
+  bool may_show(std::span<const dvec3> points) const {
+    unsigned beyond = ~0u;
+    for (std::size_t i = 0; i < points.size() && beyond != 0; ++i) beyond &= outcode(points[i]);
+    return beyond == 0 || points.empty();
   }
 
  private:
+  unsigned outcode(const dvec3& p) const {
+    return layers::outcode(sides_, clip_from_world_ * layers::dvec4(p, 1));
+  }
+
   layers::dmat4 clip_from_world_;
   layers::ViewHalfSpaces sides_;
 };
@@ -97,6 +105,7 @@ class Pairs {
     const bool eye_moved = bound_.surface->has_specular() && then_.eye() != now_.eye();
     for (std::size_t body = 0; body < bodies_; ++body) {
       const Carry forward(then_, now_, body, points_per_body_), back(now_, then_, body, points_per_body_);
+      if (is_beyond(body, forward)) continue;
       for (std::size_t l = 0; l < now_.lights.size(); ++l)
         if (!forward.is_still() || eye_moved || then_.lights[l] != now_.lights[l])
           add_places(body, l, forward, back);
@@ -120,6 +129,17 @@ class Pairs {
     pair.then_color = shaded_color(*bound_.surface, then_.lights, pair.then);
     pair.now_color = shaded_color(*bound_.surface, now_.lights, pair.now);
     add(pair);
+  }
+
+  /// Nothing of the body is on the display, nor of what it was then and is carried there.
+  bool is_beyond(std::size_t body, const Carry& forward) const {
+    const auto points_of = [&](const LayerState& state) {
+      return std::span(state.world_points).subspan(body * points_per_body_, points_per_body_);
+    };
+    if (display_.may_show(points_of(now_))) return false;
+    std::vector<dvec3> carried;
+    for (const dvec3& p : points_of(then_)) carried.push_back(forward({p, dvec3(0.0)}).position);
+    return !display_.may_show(carried);
   }
 
   std::vector<SurfacePlace> places_of(const LayerState& state, std::size_t body, std::size_t light) const {

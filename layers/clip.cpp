@@ -7,6 +7,7 @@
 
 #include "layers/check.h"
 #include "layers/inline_vector.h"
+#include "layers/place_set.h"
 
 namespace talisman::layers {
 namespace {
@@ -90,21 +91,19 @@ using Codes = InlineVector<unsigned, kUsualPoints>;
 /// The points found so far, each once.
 class PointSet {
  public:
-  explicit PointSet(std::size_t originals) {
+  explicit PointSet(std::size_t originals) : places_(originals + 24) {
     has_original_.reserve(originals);
     for (std::size_t i = 0; i < originals; ++i) has_original_.push_back(0);
-    points_.reserve(originals + 24);
   }
 
   void add(const MaterialPoint& candidate) {
     if (candidate.point >= 0 && std::exchange(has_original_[candidate.point], 1)) return;
-    const auto is_candidate = [&](const MaterialPoint& p) { return is_same_place(p, candidate); };
-    if (std::none_of(points_.begin(), points_.end(), is_candidate)) points_.push_back(candidate);
+    places_.add(candidate);
   }
-  std::vector<MaterialPoint> take() { return std::move(points_); }
+  std::vector<MaterialPoint> take() { return places_.take(); }
 
  private:
-  std::vector<MaterialPoint> points_;
+  PlaceSet places_;
   InlineVector<char, kUsualPoints> has_original_;
 };
 

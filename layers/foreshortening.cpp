@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <span>
 
 #include <glm/geometric.hpp>
 
 #include "layers/inline_vector.h"
+#include "layers/place_set.h"
 #include "layers/state.h"
 
 namespace talisman::layers {
@@ -23,51 +25,96 @@ MaterialPoint at_share(const MaterialPoint& a, const MaterialPoint& b, double sh
   return {{a.clip[0] + t * (b.clip[0] - a.clip[0]), a.clip[1] + t * (b.clip[1] - a.clip[1])}, -1};
 }
 
-struct BowedPlace {
-  double bow_px = 0;
-  MaterialPoint at;
-};
+/// Places that bow, each once.
+class BowedPlaces {
+ public:
+  void add(double bow_px, const MaterialPoint& at) {
+    if (places_.add(at)) bows_px_.push_back(bow_px);
+  }
+  std::vector<MaterialPoint> largest_first(std::size_t at_most) const {
+    std::vector<std::size_t> order(bows_px_.size());
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return bows_px_[a] > bows_px_[b]; });
+    order.resize(std::min(order.size(), at_most));
+    std::vector<MaterialPoint> points;
+    points.reserve(order.size());
+    for (const std::size_t i : order) points.push_back(places_.places()[i]);
+    return points;
+  }
 
-void add_once(const BowedPlace& candidate, std::vector<BowedPlace>& places) {
-  const auto is_candidate = [&](const BowedPlace& p) { return is_same_place(p.at, candidate.at); };
-  if (std::none_of(places.begin(), places.end(), is_candidate)) places.push_back(candidate);
-}
+ private:
+  PlaceSet places_{kMostBowedPlaces};
+  std::vector<double> bows_px_;
+};
 
 /// A corner, as far as bows depend on it.
 struct Corner {
-  double depth_ratio = 1;
+  double depth_ratio = 1, root = 1;  // and its square root
   dvec2 now_px{0, 0};
 };
-using Corners = InlineVector<Corner, 8>;
 
-Corners corners_of(std::span<const MaterialPoint> polygon, ivec2 display_px) {
-  Corners corners;
-  corners.reserve(polygon.size());
-  for (const MaterialPoint& p : polygon)
-    corners.push_back({depth_ratio(p), screen_from_clip(p.clip[1], display_px)});
-  return corners;
+constexpr double kRounding = 1 - 1e-9;  // of two ways to one bow
+
+/// False: what lies between the two, or between what has these roots and is nowhere farther apart, bows less than
+/// kLeastBow_px. Without a root or a division: nearly all bow less.
+bool may_bow(double root_a, double root_b, const dvec2& apart_px) {
+  const double difference = root_a - root_b, sum = root_a + root_b;
+  return difference * difference * glm::dot(apart_px, apart_px) >=
+         kRounding * kLeastBow_px * kLeastBow_px * sum * sum;
 }
 
-bool any_can_bow(const Corners& corners) {
-  constexpr double kRounding = 1 + 1e-9;  // of the two ways to one distance
+/// The corners of polygons. Those of the body belong to several and are worked out once.
+class Corners {
+ public:
+  using OfPolygon = InlineVector<Corner, 8>;
+
+  explicit Corners(ivec2 display_px) : display_px_(display_px) {}
+
+  OfPolygon of(std::span<const MaterialPoint> polygon) {
+    OfPolygon corners;
+    corners.reserve(polygon.size());
+    for (const MaterialPoint& p : polygon) corners.push_back(p.point < 0 ? worked_out(p) : known(p));
+    return corners;
+  }
+
+ private:
+  Corner worked_out(const MaterialPoint& p) const {
+    const double ratio = depth_ratio(p);
+    return {ratio, std::sqrt(ratio), screen_from_clip(p.clip[1], display_px_)};
+  }
+  const Corner& known(const MaterialPoint& p) {
+    const auto i = static_cast<std::size_t>(p.point);
+    if (i >= known_.size()) known_.resize(i + 1), is_known_.resize(i + 1);
+    if (!is_known_[i]) known_[i] = worked_out(p), is_known_[i] = true;
+    return known_[i];
+  }
+
+  ivec2 display_px_;
+  std::vector<Corner> known_;  // by MaterialPoint::point
+  std::vector<char> is_known_;
+};
+
+bool any_may_bow(const Corners::OfPolygon& corners) {
   double least = HUGE_VAL, most = 0;
   RectD bounds;
   for (const Corner& corner : corners) {
-    least = std::min(least, corner.depth_ratio), most = std::max(most, corner.depth_ratio);
+    least = std::min(least, corner.root), most = std::max(most, corner.root);
     bounds.include(corner.now_px);
   }
-  return can_bow(least, most, kRounding * glm::distance(bounds.lo, bounds.hi));
+  return may_bow(least, most, bounds.hi - bounds.lo);
 }
 
 /// Every place between two corners of the polygon that bows enough.
-void add_places(std::span<const MaterialPoint> polygon, ivec2 display_px, std::vector<BowedPlace>& places) {
-  const Corners corners = corners_of(polygon, display_px);
-  if (!any_can_bow(corners)) return;
+void add_places(std::span<const MaterialPoint> polygon, const Corners::OfPolygon& corners,
+                BowedPlaces& places) {
+  if (!any_may_bow(corners)) return;
   for (std::size_t i = 0; i < polygon.size(); ++i)
     for (std::size_t j = i + 1; j < polygon.size(); ++j) {
+      if (!may_bow(corners[i].root, corners[j].root, corners[j].now_px - corners[i].now_px)) continue;
       const Bow bow = bow_of(corners[j].depth_ratio / corners[i].depth_ratio);
       const double bow_px = bow.share * glm::distance(corners[i].now_px, corners[j].now_px);
-      if (bow_px >= kLeastBow_px) add_once({bow_px, at_share(polygon[i], polygon[j], bow.at)}, places);
+      if (bow_px >= kLeastBow_px) places.add(bow_px, at_share(polygon[i], polygon[j], bow.at));
     }
 }
 
@@ -83,14 +130,10 @@ bool can_bow(double least_ratio, double most_ratio, double apart_px) {
 }
 
 std::vector<MaterialPoint> bowed_places(const PolygonList& polygons, ivec2 display_px) {
-  std::vector<BowedPlace> places;
-  for (std::size_t i = 0; i < polygons.size(); ++i) add_places(polygons[i], display_px, places);
-  std::stable_sort(places.begin(), places.end(),
-                   [](const BowedPlace& a, const BowedPlace& b) { return a.bow_px > b.bow_px; });
-  std::vector<MaterialPoint> points;
-  points.reserve(std::min(places.size(), kMostBowedPlaces));
-  for (std::size_t i = 0; i < std::min(places.size(), kMostBowedPlaces); ++i) points.push_back(places[i].at);
-  return points;
+  BowedPlaces places;
+  Corners corners(display_px);
+  for (std::size_t i = 0; i < polygons.size(); ++i) add_places(polygons[i], corners.of(polygons[i]), places);
+  return places.largest_first(kMostBowedPlaces);
 }
 
 }  // namespace talisman::layers

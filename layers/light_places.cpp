@@ -49,6 +49,8 @@ void for_each_on_cone(const dvec3& axis, double cosine, const Visit& visit) {
 struct HullFace {
   dvec3 a, ab, ac, normal;
   bool is_flat = false;  ///< it has no area
+  double radius = 0;     ///< of the face about `a`
+  double least_side = 0;
   std::span<const std::array<int, 3>> triangles;
 
   /// Of the triangle `first` and those that follow it in its plane.
@@ -56,6 +58,7 @@ struct HullFace {
     std::size_t end = first + 1;
     while (end < body.triangles.size() && (is_flat || is_in_plane(body, body.triangles[end]))) ++end;
     triangles = body.triangles.subspan(first, is_flat ? 1 : end - first);
+    measure(body);
   }
   double height(const dvec3& p) const { return dot(normal, p - a); }
 
@@ -65,6 +68,15 @@ struct HullFace {
     const double area = glm::length(normal);
     is_flat = !(area > kEdgeOnShare * glm::length(ab) * glm::length(ac)) || !std::isfinite(area);
     if (!is_flat) normal /= area;
+  }
+  void measure(const BodySurface& body) {
+    double radius2 = 0, side2 = HUGE_VAL;
+    for (const auto& t : triangles) {
+      const dvec3 &p = body.points[t[0]], &q = body.points[t[1]], &r = body.points[t[2]];
+      for (const dvec3& corner : {p, q, r}) radius2 = std::max(radius2, dot(corner - a, corner - a));
+      side2 = std::min({side2, dot(q - p, q - p), dot(r - p, r - p)});
+    }
+    radius = std::sqrt(radius2), least_side = std::sqrt(side2);
   }
   /// Opposite faces may follow each other, too.
   bool is_in_plane(const BodySurface& body, const std::array<int, 3>& t) const {
@@ -149,9 +161,23 @@ void add_seen(const dvec3& eye, const dvec3& target, const HullFace& face, const
     places.push_back(place);
 }
 
+/// False: of a ring of this radius about a place on the plane of the face nothing is in the face (is_in_face), however
+/// it rounds: a triangle is that much larger for it.
+bool may_meet(const HullFace& face, const dvec3& eye, const dvec3& place, double ring) {
+  const double apart = glm::distance(place, face.a), far = glm::distance(eye, place) + ring;
+  const double slack = 8 * kNearFace * (face.radius + far * face.radius / face.least_side);
+  const double around = (face.radius + slack) * (1 + 1e-9) + 1e-9 * (apart + ring);
+  return !(std::fabs(apart - ring) > around);
+}
+
+/// Twice the tangent of the angle of H to N at which (N·H)ⁿ is a half.
+double spread_of_highlight(double shininess) {
+  return 2 * std::tan(std::acos(std::pow(0.5, 1 / std::max(shininess, 1.0))));
+}
+
 /// The highlight on one face. With V and L of lengths v and l a step δ across the place turns H by about
 /// δ (1/v + 1/l) / 2.
-void add_highlight(const LightState& light, const dvec3& eye, double shininess, const HullFace& face,
+void add_highlight(const LightState& light, const dvec3& eye, double spread, const HullFace& face,
                    const BodySurface& body, std::vector<SurfacePlace>& places) {
   const bool is_directional = light.kind == Light::Kind::Directional;
   const dvec3 image = eye - 2 * face.height(eye) * face.normal;
@@ -162,11 +188,10 @@ void add_highlight(const LightState& light, const dvec3& eye, double shininess, 
   if (!same_side || slope == 0) return;
   const dvec3 place = image + height / slope * way;
   if (!layers::is_finite(place)) return;
-  add_seen(eye, place, face, body, places);
-  const double half_angle = std::acos(std::pow(0.5, 1 / std::max(shininess, 1.0)));
+  if (may_meet(face, eye, place, 0)) add_seen(eye, place, face, body, places);
   const double from_light = is_directional ? HUGE_VAL : glm::distance(light.position, place);
-  const double step = 2 * std::tan(half_angle) / (1 / glm::distance(eye, place) + 1 / from_light);
-  if (!(step > 0 && std::isfinite(step))) return;
+  const double step = spread / (1 / glm::distance(eye, place) + 1 / from_light);
+  if (!(step > 0 && std::isfinite(step)) || !may_meet(face, eye, place, step)) return;
   for_each_on_cone(face.normal, 0,
                    [&](const dvec3& aside) { add_seen(eye, place + step * aside, face, body, places); });
 }
@@ -181,12 +206,13 @@ void append_light_places(const LightState& light, const dvec3& eye, const MeanSu
   if (light.kind == Light::Kind::Spot) add_cone(light, body, places);
   const bool has_feet = light.kind == Light::Kind::Point;
   if (!has_feet && !surface.has_specular()) return;
+  const double spread = surface.has_specular() ? spread_of_highlight(surface.shininess) : 0;
   for (std::size_t first = 0; first < body.triangles.size();) {
     const HullFace face(body, first);
     first += face.triangles.size();
     if (face.is_flat) continue;
     if (has_feet) add_foot(light, face, body, places);
-    if (surface.has_specular()) add_highlight(light, eye, surface.shininess, face, body, places);
+    if (surface.has_specular()) add_highlight(light, eye, spread, face, body, places);
   }
 }
 

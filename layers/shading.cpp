@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -120,26 +121,41 @@ std::vector<dvec3> corners_of(const SceneFrame& frame, const Layer& layer) {
   return points;
 }
 
-/// Neither of them moves, nor any light that casts, and none of these throws a shadow of the one on the other
-/// (layers/casting.h). Where something moves that is asked anew in each frame (layers/shade_state.h).
-bool never_casts(const Scene& scene, const Layer& caster, const Layer& receiver) {
-  if (!caster.tiles || !receiver.tiles || !rests(scene, caster) || !rests(scene, receiver)) return false;
-  const SceneFrame frame = scene.at(0);
-  const std::vector<dvec3> from = corners_of(frame, caster), onto = corners_of(frame, receiver);
-  const std::vector<int> lights = casting_lights(scene);
-  return std::all_of(lights.begin(), lights.end(), [&](int light) {
-    return rests(scene, scene.lights[light]) &&
-           !may_cast(frame, frame.lights[light], {*caster.tiles, from}, {*receiver.tiles, onto});
-  });
-}
+/// What of the layers of a set rests, where it is, and which lights cast; looked at once for all pairs.
+class RestingCasters {
+ public:
+  RestingCasters(const Scene& scene, const LayerSet& set)
+      : frame_(scene.at(0)), lights_(casting_lights(scene)), corners_(set.layers.size()) {
+    lights_rest_ =
+        std::all_of(lights_.begin(), lights_.end(), [&](int i) { return rests(scene, scene.lights[i]); });
+    for (const Layer& layer : set.layers)
+      if (lights_rest_ && layer.tiles && rests(scene, layer)) corners_[layer.id] = corners_of(frame_, layer);
+  }
+
+  /// Neither of the two moves, nor any light that casts, and none of these throws a shadow of the one on the
+  /// other (layers/casting.h). Where something moves that is asked anew in each frame (layers/shade_state.h).
+  bool never_cast(const Layer& caster, const Layer& receiver) const {
+    const auto &from = corners_[caster.id], &onto = corners_[receiver.id];
+    if (!from || !onto) return false;
+    return std::none_of(lights_.begin(), lights_.end(), [&](int light) {
+      return may_cast(frame_, frame_.lights[light], {*caster.tiles, *from}, {*receiver.tiles, *onto});
+    });
+  }
+
+ private:
+  SceneFrame frame_;
+  std::vector<int> lights_;
+  bool lights_rest_ = true;
+  std::vector<std::optional<std::vector<dvec3>>> corners_;  // by layer; only of what rests and has tiles
+};
 
 /// The geometry layers that may darken `receiver`. What is flat never shadows itself.
 std::vector<int> casters_for(const Scene& scene, const LayerSet& set, const std::vector<bool>& casts,
-                             const Layer& receiver) {
+                             const RestingCasters& resting, const Layer& receiver) {
   const bool flat = common_plane(scene, receiver.parts, receiver.rigid_node).has_value();
   std::vector<int> casters;
   for (const Layer& layer : set.layers)
-    if (casts[layer.id] && !(flat && layer.id == receiver.id) && !never_casts(scene, layer, receiver))
+    if (casts[layer.id] && !(flat && layer.id == receiver.id) && !resting.never_cast(layer, receiver))
       casters.push_back(layer.id);
   return casters;
 }
@@ -151,14 +167,14 @@ std::vector<int> all_but(const LayerSet& set, int id) {
   return ids;
 }
 
-void describe_geometry(const Scene& scene, const std::vector<bool>& casts, const LayerSet& set,
-                       Layer& layer) {
+void describe_geometry(const Scene& scene, const std::vector<bool>& casts, const RestingCasters* resting,
+                       const LayerSet& set, Layer& layer) {
   layer.holds = called_terms(scene, layer);
   if (layer.holds.reflection)
     layer.plane = common_plane(scene, parts_with(scene, layer, is_reflecting), layer.rigid_node);
   else if (layer.holds.shadows || layer.holds.specular)
     layer.plane = common_plane(scene, layer.parts, layer.rigid_node);
-  if (layer.holds.shadows) layer.casters = casters_for(scene, set, casts, layer);
+  if (layer.holds.shadows) layer.casters = casters_for(scene, set, casts, *resting, layer);
   layer.holds.shadows = !layer.casters.empty();
   if (layer.holds.reflection) layer.reflected = all_but(set, layer.id);
   layer.holds.reflection = !layer.reflected.empty();
@@ -417,9 +433,12 @@ void add_shade_layers(const Scene& scene, std::span<const LayerSpec> specs, Laye
   std::vector<bool> casts(set.layers.size(), false);
   for (std::size_t i = 0; i < set.layers.size(); ++i)
     casts[i] = specs[i].casts_shadows && any_part(scene, set.layers[i], casts_shadow);
-  if (!casting_lights(scene).empty())
+  std::optional<RestingCasters> resting;
+  if (!casting_lights(scene).empty()) {
     for (Layer& layer : set.layers) layer.tiles = tiles_of(scene, layer, casts[layer.id]);
-  for (Layer& layer : set.layers) describe_geometry(scene, casts, set, layer);
+    resting.emplace(scene, set);
+  }
+  for (Layer& layer : set.layers) describe_geometry(scene, casts, resting ? &*resting : nullptr, set, layer);
   std::vector<Layer> all;
   for (const Layer& geometry : set.layers) {
     Layer base = geometry;  // its id is still its number among the geometry layers

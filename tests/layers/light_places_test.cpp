@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <random>
 
 #include <gtest/gtest.h>
 
@@ -31,6 +33,9 @@ std::vector<SurfacePlace> places_of(const LightState& light, const dvec3& eye = 
   layers::append_light_places(light, eye, surface, {floor_hull().points, floor_hull().triangles}, places);
   return places;
 }
+
+/// How many places of a lamp above the floor are its own, without a highlight.
+int foot_and_ring(const dvec3& lamp_at) { return static_cast<int>(places_of(lamp(lamp_at)).size()); }
 
 LightState spot(const dvec3& position, double inner_rad, double outer_rad) {
   LightState light = lamp(position);
@@ -133,6 +138,39 @@ TEST(LightPlaces, HighlightObeysTheLawOfReflection) {
     EXPECT_LT(lobe, 0.9);
   }
   EXPECT_TRUE(places_of(sun({0, 1, 1}), eye, shiny).empty()) << "the sun is below";
+}
+
+/// A ring is looked at only where it may meet the face: every place of it that is on the floor must be found.
+TEST(LightPlaces, NoPlaceOfAHighlightIsMissed) {
+  std::mt19937 random(7);
+  const auto within = [&](double lo, double hi) { return std::uniform_real_distribution<>(lo, hi)(random); };
+  int outside = 0, partly = 0, inside = 0;
+  for (int run = 0; run < 4000; ++run) {
+    const double reach = std::pow(10, within(0, 2));
+    const dvec3 eye(within(-reach, reach), std::pow(10, within(-2, 2)), within(-reach, reach));
+    const dvec3 at(within(-reach, reach), std::pow(10, within(-2, 2)), within(-reach, reach));
+    MeanSurface shiny;
+    shiny.specular = dvec3(1.0), shiny.shininess = std::pow(10, within(0, 3));
+    // The eye's mirror image sees the lamp through this place.
+    const double share = eye.y / (eye.y + at.y);
+    const dvec3 place(eye.x + share * (at.x - eye.x), 0, eye.z + share * (at.z - eye.z));
+    const double tangent = std::tan(std::acos(std::pow(0.5, 1.0 / shiny.shininess)));
+    const double step = 2 * tangent / (1 / glm::distance(eye, place) + 1 / glm::distance(at, place));
+    const auto is_on_floor = [](const dvec3& p, double slack) {
+      return std::max(std::fabs(p.x), std::fabs(p.z)) <= 10 + slack;
+    };
+    int least = is_on_floor(place, -1e-6), most = is_on_floor(place, 1e-6);
+    for (int k = 0; k < layers::kRing; ++k) {
+      const double turn = 2 * std::numbers::pi * k / layers::kRing;
+      const dvec3 ring = place + step * dvec3(std::cos(turn), 0, std::sin(turn));
+      least += is_on_floor(ring, -1e-6), most += is_on_floor(ring, 1e-6);
+    }
+    const int found = static_cast<int>(places_of(lamp(at), eye, shiny).size()) - foot_and_ring(at);
+    EXPECT_GE(found, least) << run;
+    EXPECT_LE(found, most) << run;
+    outside += most == 0, inside += least == 1 + layers::kRing, partly += least > 0 && most <= layers::kRing;
+  }
+  EXPECT_GT(std::min({outside, partly, inside}), 200);
 }
 
 TEST(LightPlaces, LampInARoomLightsItsWalls) {

@@ -2,9 +2,12 @@
 #include "sequences/content/factoring/factoring.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <optional>
 #include <set>
+
+#include <tbb/parallel_for.h>
 
 #include "sequences/content/factoring/backdrops.h"
 #include "sequences/files/number_text.h"
@@ -67,6 +70,14 @@ double dearness_ms(const Factoring& f) {
   return f.plan.work_ms() / (f.has_background ? kWorthABackground : 1);
 }
 
+bool is_cheaper(const Factoring& a, const Factoring& b) { return dearness_ms(a) < dearness_ms(b); }
+
+/// Groups to be looked at, and after them those that share a sprite anyway as one (`is_joined`).
+struct Candidate {
+  Groups groups;
+  bool has_background = false, is_joined = false;
+};
+
 class Study {
  public:
   Study(const Unfactored& scene, const AutoLayers& options)
@@ -87,9 +98,7 @@ class Study {
     if (data_) behind_ = pieces_behind(scene_.scene, pieces_, data_->depths);
     std::vector<Factoring> all = by_node || !data_ ? by_nodes() : by_velocity();
     FactoringStudy result;
-    const auto best = std::min_element(all.begin(), all.end(), [](const Factoring& a, const Factoring& b) {
-      return dearness_ms(a) < dearness_ms(b);
-    });
+    const auto best = std::min_element(all.begin(), all.end(), is_cheaper);
     result.chosen = std::move(*best);
     all.erase(best);
     std::erase_if(all, [](const Factoring& f) { return f.how == "velocity"; });
@@ -185,12 +194,12 @@ class Study {
                       std::max(scene_.settings.frames, 1));
   }
 
-  void plan(Factoring& f) const {
-    f.plan = plan_of(scene_.scene, f.specs, f.pairs(), scene_.settings, frames_);
+  void plan(Factoring& f, double enough_ms = HUGE_VAL) const {
+    f.plan = plan_of(scene_.scene, f.set, f.pairs(), scene_.settings, frames_, enough_ms);
   }
 
   Sharing sharing(const Factoring& f) const {
-    return sharing_of(scene_.scene, f.specs, f.pairs(), scene_.settings, instants_);
+    return sharing_of(scene_.scene, f.set, f.pairs(), scene_.settings, instants_);
   }
 
   /// Puts what lies behind all else into the background.
@@ -212,27 +221,40 @@ class Study {
     return first > 0 ? first / (first + second) : 0;
   }
 
-  /// With pairs where the bounds know no order.
-  Factoring in_order(const std::string& how, const Groups& groups, bool background) const {
-    Factoring f = factoring_of(how, groups);
-    if (background) put_behind(f);
+  /// With pairs where the bounds know no order, and what then shares a sprite.
+  struct Ordered {
+    Factoring factoring;
+    Sharing sharing;
+  };
+  Ordered in_order(const Candidate& candidate) const {
+    Factoring f = factoring_of("velocity", candidate.groups);
+    if (candidate.has_background) put_behind(f);
+    f.set = layers::factor(scene_.scene, f.specs);
     std::vector<layers::OrderGroup> places;
     for (const LayerSpec& spec : f.specs) places.push_back(spec.group);
+    Sharing shared = sharing(f);
     for (int round = 0; round < kOrderRounds; ++round) {
       std::set<SpecPair> asked(f.asked.begin(), f.asked.end());
-      for (const auto& [pair, frames] : sharing(f).frames) asked.insert(pair);
+      for (const auto& [pair, frames] : shared.frames) asked.insert(pair);
       if (asked.size() == f.asked.size()) break;
       f.asked.assign(asked.begin(), asked.end());
       f.order = seen_order(data_->depths, f.pieces, places, f.asked);
+      shared = sharing(f);
     }
+    return {std::move(f), std::move(shared)};
+  }
+
+  Factoring as_one_of(const std::string& how, const Groups& groups) const {
+    Factoring f = factoring_of(how, groups);
+    f.set = layers::factor(scene_.scene, f.specs);
+    plan(f);
     return f;
   }
 
   std::vector<Factoring> by_nodes() {
-    std::vector<Factoring> all{factoring_of("node", data_ ? limited_nodes() : largest_nodes())};
-    frames_ = frames_planned(all[0].specs.size());
-    plan(all[0]);
-    return all;
+    const Groups groups = data_ ? limited_nodes() : largest_nodes();
+    frames_ = frames_planned(scene_.kept.size() + groups.size());
+    return {as_one_of("node", groups)};
   }
 
   /// All over the same frames.
@@ -240,49 +262,87 @@ class Study {
     const Groups bodies = bodies_of(scene_.scene, pieces_);
     frames_ = frames_planned(std::max(bodies.size(), nodes_.size()) + scene_.kept.size());
     std::vector<Factoring> all;
-    for (const Groups& start : {alone(), bodies, nodes_})
-      add_by_velocity(grouped(data(), {options_.max, false}, start), false, all);
-    if (any_behind())
-      for (const Groups& start : {alone(), bodies, nodes_, nodes_on_tiles()}) {
-        const Groups cut = cut_by(behind_, start);
-        const auto most = static_cast<std::size_t>(options_.max);
-        const Groups joined = grouped(data(true), {options_.max, false}, cut);
-        if (joined.size() <= most) add_by_velocity(joined, true, all);  // both sides may be too many
-        if (cut.size() <= most) add_once(cut, true, all);
-      }
+    std::vector<Candidate> open = starts(bodies);
+    for (int round = 0; round <= kJoinRounds; ++round) open = look_at(std::move(open), all);
     for (int round = 0; round < kSplitRounds; ++round) {
-      const auto best = std::min_element(all.begin(), all.end(), [](const Factoring& a, const Factoring& b) {
-        return dearness_ms(a) < dearness_ms(b);
-      });
-      const bool background = best->has_background;
-      if (!add_once(split_where_cheaper(*best, bodies), background, all)) break;
+      const auto best = std::min_element(all.begin(), all.end(), is_cheaper);
+      const std::size_t before = all.size();
+      look_at({{split_where_cheaper(*best, bodies), best->has_background, false}}, all);
+      if (all.size() == before) break;
     }
-    if (nodes_.size() <= static_cast<std::size_t>(options_.max)) {
-      all.push_back(factoring_of("node", nodes_));
-      plan(all.back());
-    }
-    all.push_back(factoring_of("one", {everything()}));
-    plan(all.back());
+    if (nodes_.size() <= static_cast<std::size_t>(options_.max)) all.push_back(as_one_of("node", nodes_));
+    all.push_back(as_one_of("one", {everything()}));
     return all;
   }
 
-  /// Orders and plans the groups; false: they are there already.
-  bool add_once(Groups groups, bool background, std::vector<Factoring>& all) const {
-    std::sort(groups.begin(), groups.end());
-    const auto first = static_cast<std::ptrdiff_t>(scene_.kept.size());
-    for (const Factoring& f : all)
-      if (f.has_background == background &&
-          std::equal(f.pieces.begin() + first, f.pieces.end(), groups.begin(), groups.end()))
-        return false;
-    all.push_back(in_order("velocity", groups, background));
-    plan(all.back());
-    return true;
+  /// What is grouped by motion, and the bodies as they are before a background.
+  std::vector<Candidate> starts(const Groups& bodies) const {
+    const std::vector<Groups> at_first{alone(), bodies, nodes_};
+    std::vector<Groups> cut;
+    if (any_behind())
+      for (const Groups& start : {alone(), bodies, nodes_, nodes_on_tiles()})
+        cut.push_back(cut_by(behind_, start));
+    std::vector<Candidate> found(at_first.size() + cut.size());
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+      const bool is_cut = i >= at_first.size();
+      const Groups& start = is_cut ? cut[i - at_first.size()] : at_first[i];
+      found[i] = {grouped(data(is_cut), {options_.max, false}, start), is_cut, true};
+    });
+    const auto most = static_cast<std::size_t>(options_.max);
+    std::erase_if(found, [&](const Candidate& c) {  // both sides may be too many
+      return c.has_background && c.groups.size() > most;
+    });
+    for (Groups& groups : cut)
+      if (groups.size() <= most) found.push_back({std::move(groups), true, false});
+    return found;
   }
 
-  /// The groups, and the same with those joined that share a sprite in most of the frames anyway.
-  void add_by_velocity(Groups groups, bool background, std::vector<Factoring>& all) const {
-    for (int round = 0; round <= kJoinRounds && add_once(groups, background, all); ++round)
-      groups = joined_where_shared(all.back());
+  bool is_among(const Candidate& candidate, const std::vector<Factoring>& all) const {
+    const auto first = static_cast<std::ptrdiff_t>(scene_.kept.size());
+    return std::any_of(all.begin(), all.end(), [&](const Factoring& f) {
+      return f.has_background == candidate.has_background &&
+             std::equal(f.pieces.begin() + first, f.pieces.end(), candidate.groups.begin(),
+                        candidate.groups.end());
+    });
+  }
+
+  /// Those that are not among `all`, each once.
+  std::vector<Candidate> new_ones(std::vector<Candidate> open, const std::vector<Factoring>& all) const {
+    std::vector<Candidate> kept;
+    for (Candidate& candidate : open) {
+      std::sort(candidate.groups.begin(), candidate.groups.end());
+      const auto same = std::find_if(kept.begin(), kept.end(), [&](const Candidate& other) {
+        return other.has_background == candidate.has_background && other.groups == candidate.groups;
+      });
+      if (same != kept.end())
+        same->is_joined |= candidate.is_joined;
+      else if (!is_among(candidate, all))
+        kept.push_back(std::move(candidate));
+    }
+    return kept;
+  }
+
+  /// Orders and plans what is new, each until it is dearer than the cheapest that is known: that is never chosen. Returns
+  /// what comes of those that are joined.
+  std::vector<Candidate> look_at(std::vector<Candidate> open, std::vector<Factoring>& all) const {
+    open = new_ones(std::move(open), all);
+    std::atomic<double> least_ms = HUGE_VAL;
+    for (const Factoring& f : all) least_ms = std::min(least_ms.load(), dearness_ms(f));
+    std::vector<Factoring> found(open.size());
+    std::vector<Candidate> next(open.size());
+    tbb::parallel_for(std::size_t{0}, open.size(), [&](std::size_t i) {
+      Ordered ordered = in_order(open[i]);
+      Factoring& f = found[i] = std::move(ordered.factoring);
+      plan(f, least_ms * (f.has_background ? kWorthABackground : 1));
+      double known = least_ms;
+      while (dearness_ms(f) < known && !least_ms.compare_exchange_weak(known, dearness_ms(f))) {
+      }
+      if (open[i].is_joined)
+        next[i] = {joined_where_shared(f, ordered.sharing), open[i].has_background, true};
+    });
+    all.insert(all.end(), std::make_move_iterator(found.begin()), std::make_move_iterator(found.end()));
+    std::erase_if(next, [](const Candidate& c) { return !c.is_joined; });
+    return next;
   }
 
   /// The same with groups apart again that a plan, in which each layer is alone, shows to be dearer than the bodies in
@@ -330,11 +390,10 @@ class Study {
     return plans_apart(scene_.scene, specs, scene_.settings, frames_);
   }
 
-  Groups joined_where_shared(const Factoring& f) const {
+  Groups joined_where_shared(const Factoring& f, const Sharing& sharing) const {
     const std::size_t first = scene_.kept.size();
     std::vector<std::size_t> root(f.specs.size());
     std::iota(root.begin(), root.end(), 0);
-    const Sharing sharing = this->sharing(f);
     for (const auto& [pair, frames] : sharing.frames) {
       const auto [a, b] = pair;
       const int shown = std::min(sharing.frames_shown[a], sharing.frames_shown[b]);

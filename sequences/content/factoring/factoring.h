@@ -45,6 +45,7 @@ struct Unfactored {
 struct Factoring {
   std::string how;                       ///< "velocity", "node", "one": of which the layers are
   std::vector<layers::LayerSpec> specs;  ///< those that were kept first
+  layers::LayerSet set;                  ///< what layers::factor makes of them
   std::vector<std::vector<int>> pieces;  ///< by spec: what each has
   std::vector<SeenPair> order;
   PlannedFactoring plan;

@@ -111,15 +111,30 @@ std::vector<PlannedFactoring> plans_apart(const layers::Scene& scene,
   return plans;
 }
 
-Sharing sharing_of(const layers::Scene& scene, std::span<const layers::LayerSpec> specs,
-                   std::span<const SpecPair> order, const Settings& settings, std::span<const int> frames) {
-  Sharing sharing{{}, std::vector<int>(specs.size())};
-  layers::LayerSet set = layers::factor(scene, specs);
+namespace {
+
+/// The layers without what is of no account for their order.
+layers::LayerSet only_shapes(const layers::LayerSet& set) {
+  layers::LayerSet shapes = set;
+  for (layers::Layer& layer : shapes.layers) {
+    layer.holds = {};
+    layer.casters.clear();
+    layer.reflected.clear();
+  }
+  return shapes;
+}
+
+}  // namespace
+
+Sharing sharing_of(const layers::Scene& scene, const layers::LayerSet& set, std::span<const SpecPair> order,
+                   const Settings& settings, std::span<const int> frames) {
+  const std::vector<int> spec_of = specs_by_id(set);
+  const int specs = spec_of.empty() ? 0 : 1 + *std::max_element(spec_of.begin(), spec_of.end());
+  Sharing sharing{{}, std::vector<int>(static_cast<std::size_t>(specs))};
   if (!set.defect.empty()) return sharing;
   Settings own = settings;
   own.explicit_order = ids_of(order, set);
-  const std::vector<int> spec_of = specs_by_id(set);
-  const Pipeline pipeline = make_pipeline(scene, std::move(set), own);
+  const Pipeline pipeline = make_pipeline(scene, only_shapes(set), own);
   PipelineState state(pipeline);
   for (const int frame : frames) {
     begin_frame(pipeline, state, frame);
@@ -138,16 +153,16 @@ Sharing sharing_of(const layers::Scene& scene, std::span<const layers::LayerSpec
   return sharing;
 }
 
-PlannedFactoring plan_of(const layers::Scene& scene, std::span<const layers::LayerSpec> specs,
-                         std::span<const SpecPair> order, const Settings& settings, int frames) {
+PlannedFactoring plan_of(const layers::Scene& scene, const layers::LayerSet& set,
+                         std::span<const SpecPair> order, const Settings& settings, int frames,
+                         double enough_ms) {
   PlannedFactoring result;
-  layers::LayerSet set = layers::factor(scene, specs);
   if (!set.defect.empty()) return result;
   Settings own = settings;
   own.explicit_order = ids_of(order, set);
-  const Pipeline pipeline = make_pipeline(scene, std::move(set), own);
+  const Pipeline pipeline = make_pipeline(scene, set, own);
   PipelineState state(pipeline);
-  for (int frame = 0; frame < frames; ++frame) {
+  for (int frame = 0; frame < frames && result.polygon_ms() + result.pixel_ms() <= enough_ms; ++frame) {
     const FrameReport report = step(pipeline, state, frame, nullptr);
     ++result.frames;
     for (const regulator::LayerDecision& decision : report.plan.decisions) add(decision, result);

@@ -3,6 +3,7 @@
 
 /// What do layers cost? Planned as every run plans them, without a pixel.
 
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -35,13 +36,16 @@ struct Sharing {
   std::vector<int> frames_shown;   ///< by spec, of these frames
 };
 
-/// Orders these frames, ascending, and nothing else. Cost: some µs per layer and frame.
-Sharing sharing_of(const layers::Scene& scene, std::span<const layers::LayerSpec> specs,
-                   std::span<const SpecPair> order, const Settings& settings, std::span<const int> frames);
+/// Orders these frames, ascending, and nothing else. `set` is what layers::factor makes of specs. Cost: some µs per layer
+/// and frame.
+Sharing sharing_of(const layers::Scene& scene, const layers::LayerSet& set, std::span<const SpecPair> order,
+                   const Settings& settings, std::span<const int> frames);
 
-/// Plans `frames` frames. Specs whose factoring has a defect give no frames.
-PlannedFactoring plan_of(const layers::Scene& scene, std::span<const layers::LayerSpec> specs,
-                         std::span<const SpecPair> order, const Settings& settings, int frames);
+/// Plans `frames` frames, or as many as it takes until polygons and pixels alone cost more than `enough_ms`. A set with a
+/// defect gives no frames.
+PlannedFactoring plan_of(const layers::Scene& scene, const layers::LayerSet& set,
+                         std::span<const SpecPair> order, const Settings& settings, int frames,
+                         double enough_ms = HUGE_VAL);
 
 /// The same of each layer as if it were alone: nothing is merged, and nothing casts shadows.
 std::vector<PlannedFactoring> plans_apart(const layers::Scene& scene,

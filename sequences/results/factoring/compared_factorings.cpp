@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <map>
 
+#include <tbb/parallel_for.h>
+
 #include "sequences/content/own_settings.h"
 #include "sequences/files/quoted.h"
 #include "sequences/results/planned.h"
@@ -28,8 +30,7 @@ PlannedLayers planned_layers(const std::string& name, const Sequence& sequence) 
   for (const layers::ExplicitPair& pair : sequence.explicit_order)
     if (spec_of[pair.behind] != spec_of[pair.front])
       order.emplace_back(spec_of[pair.behind], spec_of[pair.front]);
-  const PlannedFactoring plan =
-      plan_of(*sequence.scene, sequence.layer_specs, order, settings, sequence.frames);
+  const PlannedFactoring plan = plan_of(*sequence.scene, sequence.layers, order, settings, sequence.frames);
   result.shown_px = plan.shown_px / sequence.frames;
   result.work_ms = plan.work_ms() / sequence.frames;
   return result;
@@ -171,7 +172,7 @@ class Changes {
 Sequence with_layers(const Sequence& sequence, const Factoring& factoring) {
   Sequence changed = sequence;
   changed.layer_specs = factoring.specs;
-  changed.layers = layers::factor(*sequence.scene, factoring.specs);
+  changed.layers = factoring.set;
   changed.explicit_order = ids_of(factoring.pairs(), changed.layers);
   return changed;
 }
@@ -184,10 +185,15 @@ ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers&
   settings.explicit_order.clear();
   ComparedFactoring compared;
   compared.study = study({*sequence.scene, std::move(kept), {}, settings}, options);
-  compared.all.push_back(planned_layers("now", sequence));
-  compared.all.push_back(planned_layers("proposed", with_layers(sequence, compared.study.chosen)));
+  std::vector<std::pair<std::string, const Factoring*>> proposals{{"proposed", &compared.study.chosen}};
   for (const Factoring& other : compared.study.others)
-    compared.all.push_back(planned_layers(ordinal_name(other.how), with_layers(sequence, other)));
+    proposals.emplace_back(ordinal_name(other.how), &other);
+  compared.all.resize(1 + proposals.size());
+  tbb::parallel_for(std::size_t{0}, compared.all.size(), [&](std::size_t i) {
+    compared.all[i] =
+        i == 0 ? planned_layers("now", sequence)
+               : planned_layers(proposals[i - 1].first, with_layers(sequence, *proposals[i - 1].second));
+  });
   Changes changes(sequence, compared.study);
   compared.wanted = changes.wanted();
   compared.further = changes.further();

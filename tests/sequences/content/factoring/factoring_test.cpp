@@ -149,7 +149,7 @@ TEST(Factoring, OfTheCanyonIsAsGoodAsTheAuthors) {
   for (const layers::ExplicitPair& pair : canyon.explicit_order)
     order.emplace_back(spec_of[pair.behind], spec_of[pair.front]);
   const sequences::PlannedFactoring authored =
-      sequences::plan_of(*canyon.scene, canyon.layer_specs, order, settings, canyon.frames);
+      sequences::plan_of(*canyon.scene, canyon.layers, order, settings, canyon.frames);
   settings.explicit_order.clear();
   const FactoringStudy study = sequences::study({*canyon.scene, {}, {}, settings}, {});
   ASSERT_EQ(study.chosen.plan.frames, canyon.frames);
