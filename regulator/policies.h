@@ -29,9 +29,10 @@ bool barred_by_maximum_rate(const LayerAssessment& layer);
 /// The fit is usable and rests on enough points to say something about the motion.
 bool has_sound_fit(const LayerAssessment& layer);
 
-/// May the old sprite be shown a little longer, mixed with the fresh one (RegulatorOptions::blend_frames)? It may be
-/// kMostFadedError times as far off as one that is reused; farther, two pictures would be seen beside each other. What
-/// it never held cannot fade: the threshold of uncovered edges stands as it is.
+/// May the old sprite be shown a little longer, mixed with the fresh one (RegulatorOptions::blend_frames)? Its place and
+/// its light may be kMostFadedError times as far off as those of one that is reused; farther, two pictures would be seen
+/// beside each other. What it never held cannot fade: the threshold of uncovered edges stands as it is, and a source that
+/// shows its next picture cuts. Nothing fades under a threshold of 0 px.
 bool may_fade_out(const LayerAssessment& old, const RegulatorOptions& options);
 inline constexpr double kMostFadedError = 2;
 

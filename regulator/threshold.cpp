@@ -87,12 +87,15 @@ bool has_sound_fit(const LayerAssessment& layer) {
 }
 
 bool may_fade_out(const LayerAssessment& old, const RegulatorOptions& options) {
+  if (!(options.thresholds.geometric_px > 0) || !old.new_picture.empty()) return false;
   if (old.identical) return true;
-  const Thresholds& limits = options.thresholds;
-  const fiducials::Visibility& visibility = old.fiducials.visibility;
-  return has_sound_fit(old) &&
-         old.fiducials.geometric.px <= kMostFadedError * geometric_limit_px(old, limits) &&
-         (limits.uncovered_px < 0 || !visibility.computed || visibility.uncovered_px <= limits.uncovered_px);
+  Thresholds limits = options.thresholds;
+  limits.geometric_px *= kMostFadedError;
+  limits.photometric *= kMostFadedError;
+  limits.light_angle_rad *= kMostFadedError;
+  limits.magnification = limits.minification = limits.anisotropy = limits.turned_px =
+      0;  // of how sharp it is
+  return first_violation(old, limits).empty();
 }
 
 std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& options) {

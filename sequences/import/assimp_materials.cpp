@@ -74,6 +74,7 @@ int material_texture(Import& import, const aiMaterial& from, bool opaque) {
     layers::Texture texture = read_reference(import, reference);
     texture.wrap_u = u, texture.wrap_v = v;
     if (opaque) make_opaque(texture);
+    if (const std::string loss = without_empty_alpha(texture); !loss.empty()) import.warn_once(loss);
     import.model.scene.textures.push_back(std::move(texture));
     entry->second = static_cast<int>(import.model.scene.textures.size()) - 1;
   } catch (const InputError& e) {

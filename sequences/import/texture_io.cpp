@@ -15,7 +15,6 @@ constexpr int kMaxSide = 16384;  // a larger side is taken for a damaged header 
 void spread_channels(const std::vector<std::uint8_t>& pixels, int channels, layers::Texture& texture) {
   const std::size_t count = static_cast<std::size_t>(texture.width) * texture.height;
   texture.rgba.resize(4 * count);
-  std::uint8_t seen = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint8_t* from = &pixels[i * channels];
     std::uint8_t* to = &texture.rgba[4 * i];
@@ -23,12 +22,7 @@ void spread_channels(const std::vector<std::uint8_t>& pixels, int channels, laye
     for (int k = 0; k < 3; ++k) to[k] = from[grey ? 0 : k];
     to[3] = channels == 2 ? from[1] : channels >= 4 ? from[3] : 255;
     texture.has_alpha |= to[3] < 255;
-    seen |= to[3];
   }
-  // Old painters wrote an alpha channel and left it zero; nobody draws a picture in order not to see it.
-  if (seen > 0) return;
-  for (std::size_t i = 0; i < count; ++i) texture.rgba[4 * i + 3] = 255;
-  texture.has_alpha = false;
 }
 
 layers::Texture read_opened(OpenedPicture opened, const std::string& name) {
@@ -60,6 +54,12 @@ layers::Texture read_texture(const std::string& path) {
 layers::Texture read_texture_from_bytes(std::span<const std::uint8_t> bytes, const std::string& name,
                                         const std::string& format) {
   return read_opened(picture_codec().open_bytes(bytes, format, AlphaKind::Straight), name);
+}
+
+bool is_all_clear(const layers::Texture& texture) {
+  for (std::size_t i = 3; i < texture.rgba.size(); i += 4)
+    if (texture.rgba[i] > 0) return false;
+  return texture.has_alpha;
 }
 
 void make_opaque(layers::Texture& texture) {

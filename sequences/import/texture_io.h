@@ -20,6 +20,9 @@ layers::Texture read_texture(const std::string& path);
 layers::Texture read_texture_from_bytes(std::span<const std::uint8_t> bytes, const std::string& name,
                                         const std::string& format);
 
+/// Is alpha 0 in every texel?
+bool is_all_clear(const layers::Texture& texture);
+
 /// Alpha is left out, as where a material says that it has no meaning.
 void make_opaque(layers::Texture& texture);
 

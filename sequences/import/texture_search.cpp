@@ -142,6 +142,12 @@ layers::Texture read_named_texture(const ModelPlace& model, const std::string& w
   return texture;
 }
 
+std::string without_empty_alpha(layers::Texture& texture) {
+  if (!is_all_clear(texture)) return {};
+  make_opaque(texture);
+  return "texture '" + texture.name + "': every texel is clear (alpha 0): alpha is left out";
+}
+
 std::string missing_texture(const std::string& written, const std::string& why) {
   return "texture '" + written + "': " + why + "; a plain colour is used";
 }

@@ -39,6 +39,11 @@ std::string find_texture(const ModelPlace& model, const std::string& written, Fi
 /// The picture read, with its file's name. Throws InputError.
 layers::Texture read_named_texture(const ModelPlace& model, const std::string& written, FileUses& files);
 
+/// Old painters wrote an alpha channel and left it zero, and the formats that name such pictures do not say how alpha is
+/// meant: a picture of which every texel is clear is made opaque. Returns the words that say so; empty: it is another.
+/// (glTF, images and shapes say how it is meant: there a clear picture is clear.)
+std::string without_empty_alpha(layers::Texture& texture);
+
 /// What is said where that fails.
 std::string missing_texture(const std::string& written, const std::string& why);
 

@@ -5,11 +5,13 @@
 #include <cmath>
 #include <cstdio>
 
+#include "regulator/policies.h"
 #include "sequences/files/folders.h"
 #include "sequences/pictures/apparent_shift.h"
 #include "sequences/pictures/flip.h"
 #include "sequences/pictures/picture_sheet.h"
 #include "sequences/pictures/quality.h"
+#include "sequences/pipeline/blended_sprites.h"
 #include "sequences/results/layer_alone.h"
 #include "sequences/results/layer_words.h"
 
@@ -89,19 +91,23 @@ Auditor::Kept& Auditor::of_layer(const std::string& name) {
 
 void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameReport& report,
                    const chunker::PreparedScene& prepared) {
+  const BlendedSprites blended = blended_sprites(state, report);
   for (const ShownSprite& sprite : report.shown) {
     const regulator::LayerDecision& decision = report.plan.decisions[sprite.layer];
-    if (decision.action != regulator::Action::Reuse) continue;
+    if (decision.action != regulator::Action::Reuse && !sprite.old) continue;
     Kept& kept = of_layer(report.layers[sprite.layer].name);
     if (++kept.audit.reuses % every_ != 0) continue;
-    const chunker::Sprite* old = state.sprites.find(sprite.layer);
+    const chunker::Sprite* old = placed_sprite(sprite, state.sprites, blended).sprite;
     if (!old) continue;
     const layers::ivec2 display_px = pipeline.settings.view.display_px;
     const chunker::Frame shown = shown_alone(*old, sprite.screen_from_sprite, sprite.multipliers,
                                              report.layers[sprite.layer], display_px);
     const chunker::Frame fresh = fresh_alone(pipeline, state, report, sprite.layer, prepared);
     const fiducials::Photometric& photometric = report.assessments[sprite.layer].fiducials.photometric;
-    const double light = photometric.computed ? photometric.color : 0;
+    double light = photometric.computed ? photometric.color : 0;
+    if (sprite.old)  // as far off as it may fade
+      light =
+          std::max(light, regulator::kMostFadedError * pipeline.settings.regulator.thresholds.photometric);
     const ApparentShift seen = apparent_shift(shown, fresh, {decision.shown_geometric_px, light});
     Pictures pictures;
     if (seen.seen.width > 0) pictures = {over_grey(shown, seen.seen), over_grey(fresh, seen.seen)};

@@ -63,6 +63,7 @@ layers::Mesh MeshBuilder::mesh_of(const tinyobj::mesh_t& from, int id, const Map
   known_.clear(), used_.clear();
   has_uvs_ = false;
   placing_ = placing;
+  uncolored_ = id < 0 ? default_obj_material().look.base_color : vec3(1);  // a material has its own
   for (std::size_t f = 0; 3 * f < from.indices.size(); ++f)
     if (from.material_ids[f] == id) add_triangle(from, f, mesh);
   for (const int place : used_) first_[static_cast<std::size_t>(place)] = -1;
@@ -136,13 +137,17 @@ void MeshBuilder::add_vertex(const tinyobj::index_t& corner, const vec3& normal,
   mesh.positions.emplace_back(place_of(content_.attributes, corner.vertex_index) - origin_);
   mesh.normals.push_back(normal);
   add_coordinates(corner, mesh);
+  add_color(static_cast<std::size_t>(corner.vertex_index), mesh);
+}
+
+void MeshBuilder::add_color(std::size_t place, layers::Mesh& mesh) const {
   const auto& c = content_.attributes.colors;
-  const std::size_t color = 3 * static_cast<std::size_t>(corner.vertex_index);
-  if (color + 2 >= c.size()) return;
-  mesh.colors.push_back({});
-  for (int k = 0; k < 3; ++k)
-    mesh.colors.back()[k] =
-        linear_from_srgb(static_cast<float>(std::max(0.0, c[color + static_cast<std::size_t>(k)])));
+  if (content_.has_color.empty() || 3 * place + 2 >= c.size()) return;
+  mesh.colors.push_back(uncolored_);
+  if (!content_.has_color[place]) return;
+  for (std::size_t k = 0; k < 3; ++k)
+    mesh.colors.back()[static_cast<int>(k)] =
+        linear_from_srgb(static_cast<float>(std::max(0.0, c[3 * place + k])));
 }
 
 std::vector<std::string> MeshBuilder::losses() const {

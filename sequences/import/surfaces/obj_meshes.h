@@ -25,6 +25,7 @@ struct ObjContent {
   tinyobj::attrib_t attributes;
   std::vector<tinyobj::shape_t> shapes;  ///< of triangles
   bool has_groups = false;               ///< it says what is smooth: what is in no group is flat
+  std::vector<bool> has_color;           ///< by vertex; empty: none has one
 };
 
 layers::dvec3 place_of(const tinyobj::attrib_t& attributes, int vertex);
@@ -72,12 +73,14 @@ class MeshBuilder {
   Corner corner_of(const tinyobj::mesh_t& from, std::size_t face, std::size_t k, layers::Mesh& mesh);
   void add_vertex(const tinyobj::index_t& corner, const layers::vec3& normal, layers::Mesh& mesh);
   void add_coordinates(const tinyobj::index_t& corner, layers::Mesh& mesh);
+  void add_color(std::size_t place, layers::Mesh& mesh) const;
 
   const ObjContent& content_;
   layers::dvec3 origin_;
   std::optional<SmoothNormals> smooth_;  ///< made when the first is asked for
   MapPlacing placing_;
-  std::vector<int> first_;  ///< by place: the last of its combinations; -1: none
+  layers::vec3 uncolored_{1};  ///< the colour of vertices that have none, where others have
+  std::vector<int> first_;     ///< by place: the last of its combinations; -1: none
   std::vector<Known> known_;
   std::vector<int> used_;
   bool has_uvs_ = false, beside_ = false;

@@ -32,6 +32,7 @@ struct ObjWords {
   std::vector<std::string> materials;  ///< in the order of their first use
   std::map<std::string, int> id_of;    ///< by the name as ObjText has it
   bool has_smoothing = false;          ///< it says somewhere what is smooth, or that nothing is
+  std::vector<bool> has_color;         ///< by vertex; empty: none has one
   std::vector<std::string> losses;     ///< what it has and the picture has not
   std::map<std::size_t, std::size_t>
       large_faces;  ///< corners of those that have more than the reader can count
@@ -65,6 +66,12 @@ void check_numbers(const std::string& path, const std::string& line) {
     throw InputError(line_of(path, line) + "a mesh has '" + line.substr(0, 60) + "', rule: finite numbers");
 }
 
+/// x y z, perhaps a weight, and three of colour.
+bool is_colored(const std::string& line, std::size_t at) {
+  constexpr std::size_t kOfPlaceAndColor = 6;
+  return corners_of(line, at, kOfPlaceAndColor) == kOfPlaceAndColor;
+}
+
 /// Free-form geometry.
 bool is_curve(const std::string& line, std::size_t at) {
   const std::string word = line.substr(at, std::min(line.find_first_of(" \t", at), line.size()) - at);
@@ -75,12 +82,16 @@ ObjWords words_of(const std::string& path) {
   ObjWords words;
   ObjText text(open_text(path));
   std::istream in(&text);
-  std::size_t faces = 0;
+  std::size_t faces = 0, vertices = 0;
   bool has_curves = false;
   for (std::string line; std::getline(in, line);) {
     const std::size_t at = line.find_first_not_of(" \t");
     if (at == std::string::npos) continue;
     if (line[at] == 'v') check_numbers(path, line);
+    if (line[at] == 'v' && (line[at + 1] == ' ' || line[at + 1] == '\t')) {
+      if (is_colored(line, at + 1)) words.has_color.resize(vertices + 1), words.has_color[vertices] = true;
+      ++vertices;
+    }
     if (line[at] == 'f') count_face(line, at + 1, faces, words);
     if (line[at] == 's' && line.find_first_of(" \t", at) == at + 1) words.has_smoothing = true;
     if (line[at] != 'f' && !has_curves) has_curves = is_curve(line, at);
@@ -92,6 +103,7 @@ ObjWords words_of(const std::string& path) {
     std::replace(name.begin(), name.end(), kKeptSpace, ' ');
     words.materials.push_back(name);
   }
+  if (!words.has_color.empty()) words.has_color.resize(vertices);
   if (has_curves) words.losses.emplace_back("curves and surfaces are not drawn");
   return words;
 }
@@ -169,10 +181,11 @@ ObjContent content_of(const std::string& path, const ObjWords& words) {
   std::vector<tinyobj::material_t> unused;
   std::string warning, error;
   if (!tinyobj::LoadObj(&content.attributes, &content.shapes, &unused, &warning, &error, &in, &numbers, false,
-                        false))
+                        !words.has_color.empty()))
     refuse_faces(path, error.substr(0, error.find('\n')));
   check_corners(path, content);
   content.has_groups = words.has_smoothing;
+  content.has_color = words.has_color;
   std::size_t face = 0;
   for (tinyobj::shape_t& shape : content.shapes) {
     const std::vector<std::size_t> counts = corner_counts(shape.mesh, face, words);
@@ -222,6 +235,7 @@ class Looks {
     if (!is_new) return entry->second;
     try {
       layers::Texture texture = read_named_texture(place_, written, files_);
+      if (std::string loss = without_empty_alpha(texture); !loss.empty()) model_.warnings.push_back(loss);
       if (clamped) texture.wrap_u = texture.wrap_v = layers::Wrap::Clamp;
       model_.scene.textures.push_back(std::move(texture));
       entry->second = static_cast<int>(model_.scene.textures.size()) - 1;
@@ -291,7 +305,7 @@ ImportedModel read_obj(const ModelPlace& place) {
   ImportedModel model;
   warn_of_losses(content, model);
   model.warnings.insert(model.warnings.end(), words.losses.begin(), words.losses.end());
-  const Looks looks(model, place, words, !content.attributes.colors.empty(), files);
+  const Looks looks(model, place, words, !content.has_color.empty(), files);
   const std::filesystem::path file(place.path);
   const dvec3 origin = origin_of(content);
   layers::Scene& scene = model.scene;

@@ -224,7 +224,9 @@ ImportedModel read_ply(const ModelPlace& place) {
   layers::Material look = bare_look();
   if (!file.pictures.empty()) {
     try {
-      model.scene.textures.push_back(read_named_texture(place, file.pictures[0], files));
+      layers::Texture picture = read_named_texture(place, file.pictures[0], files);
+      if (std::string loss = without_empty_alpha(picture); !loss.empty()) model.warnings.push_back(loss);
+      model.scene.textures.push_back(std::move(picture));
       look.texture = 0;
     } catch (const InputError& e) {
       model.warnings.push_back(missing_texture(file.pictures[0], e.what()));

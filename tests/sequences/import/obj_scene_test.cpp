@@ -215,5 +215,25 @@ TEST(ReadObj, ManyMaterialsOfNoLibraryAreOneLine) {
               ElementsAre("materials 'm0', 'm1', 'm2', 'm3', 'm4' and 3 more are in no library"));
 }
 
+// 0.6 in sRGB is 0.31855: what has no material and no colour is that grey.
+TEST(ReadObj, VerticesWithoutAColourBesideOthersThatHaveOne) {
+  const layers::Scene scene =
+      read_obj_text(
+          "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\nv 5 5 5\nv 6 5 5 0.5\nv 5 6 5\n"
+          "o a\nf 1 2 3\no b\nf 4 5 6\nusemtl paint\nf 4 5 6\n")
+          .scene;
+  ASSERT_EQ(scene.meshes.size(), 3u);
+  EXPECT_EQ(scene.meshes[0].colors, (std::vector<layers::vec3>{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}));
+  for (std::size_t mesh : {1, 2})
+    for (std::size_t part = 0; part < scene.parts.size(); ++part) {
+      if (scene.parts[part].mesh != static_cast<int>(mesh)) continue;
+      const layers::Material& look = scene.materials[scene.parts[part].material];
+      for (const layers::vec3& color : scene.meshes[mesh].colors)
+        EXPECT_NEAR((color * look.base_color).x, 0.31855f, 2e-4f) << scene.parts[part].name;
+    }
+  EXPECT_TRUE(read_obj_text("v 0 0 0\nv 1 0 0 0.5\nv 0 1 0\nf 1 2 3\n").scene.meshes.at(0).colors.empty())
+      << "a weight is no colour";
+}
+
 }  // namespace
 }  // namespace talisman::sequences

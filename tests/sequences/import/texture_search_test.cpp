@@ -7,6 +7,7 @@
 
 #include "sequences/content/sequence.h"
 #include "sequences/import/model_import.h"
+#include "sequences/import/texture_io.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {
@@ -104,6 +105,37 @@ TEST(ModelFiles, OfASequenceMayLieInItsAssets) {
   EXPECT_THAT(tests::message_of(
                   [&] { load_sequence(folder.write("show/wrong.yaml", text + "assets: [nowhere]\n")); }),
               HasSubstr("folders that are there"));
+}
+
+/// A picture of one red texel with this alpha, as TGA.
+std::string red_texel(char alpha) {
+  std::string bytes(18, '\0');
+  bytes[2] = 2, bytes[12] = bytes[14] = 1, bytes[16] = 32, bytes[17] = 8;
+  return bytes + std::string("\0\0\xff", 3) + alpha;
+}
+
+TEST(ModelFiles, EmptyAlphaOfOldPaintersIsLeftOutAndSaid) {
+  const TemporaryFolder folder;
+  folder.write("models/paint.tga", red_texel(0));
+  const ImportedModel model = import_model(model_with(folder, "paint.tga"));
+  EXPECT_FALSE(model.scene.textures.at(0).has_alpha);
+  EXPECT_EQ(model.scene.textures[0].rgba, (std::vector<std::uint8_t>{255, 0, 0, 255}));
+  EXPECT_THAT(model.warnings.at(0), HasSubstr("every texel is clear (alpha 0): alpha is left out"));
+}
+
+TEST(ModelFiles, AlphaThatIsNotEmptyHolds) {
+  const TemporaryFolder folder;
+  folder.write("models/paint.tga", red_texel(1));
+  const ImportedModel model = import_model(model_with(folder, "paint.tga"));
+  EXPECT_EQ(model.scene.textures.at(0).rgba[3], 1);
+  EXPECT_THAT(model.warnings, IsEmpty());
+}
+
+TEST(Pictures, ClearPictureIsClear) {
+  const TemporaryFolder folder;
+  const layers::Texture clear = read_texture(folder.write("clear.tga", red_texel(0)));
+  EXPECT_TRUE(clear.has_alpha);
+  EXPECT_EQ(clear.rgba[3], 0);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "regulator/policies.h"
 #include "sequences/experiments/regulator/popping.h"
 #include "tests/sequences/playback.h"
 #include "tests/support/sequences.h"
@@ -98,6 +99,33 @@ TEST(CrossFading, TheErrorShownIsThatOfTheWorse) {
   EXPECT_NEAR(reports[f].plan.decisions[kCube].shown_geometric_px,
               reports[f].plan.decisions[kCube].warp_geometric_px, 1e-9);
   EXPECT_GT(reports[f].plan.decisions[kCube].shown_geometric_px, 1);
+}
+
+TEST(CrossFading, NothingFadesUnderAThresholdOfZero) {
+  Variant variant = blended(2);
+  variant.settings.regulator.thresholds.geometric_px = 0;
+  for (const FrameReport& report : played(variant))
+    for (const ShownSprite& sprite : report.shown) EXPECT_FALSE(sprite.old) << report.frame;
+}
+
+TEST(CrossFading, WhatIsKnownToBeWrongDoesNotFade) {
+  regulator::RegulatorOptions options;  // 4 px, 0.05 of light
+  regulator::LayerAssessment old;
+  old.fitted.status = warp::FitStatus::Converged;
+  old.matched_points = 12;
+  old.fiducials.geometric.px = 7.9;
+  old.fiducials.photometric.computed = true;
+  old.fiducials.photometric.color = 0.09;
+  old.fiducials.sampling.magnification = 3;  // no worse than before it was drawn again
+  EXPECT_TRUE(regulator::may_fade_out(old, options));
+  old.fiducials.photometric.color = 0.11;  // the light is another
+  EXPECT_FALSE(regulator::may_fade_out(old, options));
+  old.fiducials.photometric.color = 0;
+  old.new_picture = "new frame of 'clip', 7";  // a cut stays a cut
+  EXPECT_FALSE(regulator::may_fade_out(old, options));
+  old.new_picture.clear();
+  old.fiducials.geometric.px = 8.1;
+  EXPECT_FALSE(regulator::may_fade_out(old, options));
 }
 
 // The oracle is another run: where the cube may be off by 1000 px, its sprite of frame 0 is carried on, and two
