@@ -15,7 +15,7 @@
 #include "sequences/commands/split.h"
 #include "sequences/commands/version.h"
 #include "sequences/commands/words.h"
-#include "sequences/results/report/page_assets.h"
+#include "sequences/pictures/page_assets.h"
 
 namespace talisman::sequences {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "sequences/files/errors.h"
 #include "sequences/files/quoted.h"
+#include "sequences/pictures/page_assets.h"
 #include "sequences/results/advice.h"
-#include "sequences/results/report/page_assets.h"
 #include "sequences/results/report/report.h"
 #include "sequences/results/report/what_if.h"
 
@@ -60,12 +60,14 @@ std::string advice_text(const Sequence& sequence, const ResolvedRun& run, const 
   return text.empty() ? text : "\n" + text;
 }
 
+bool makes_report(const CommandLine& line) { return !line.no_report && has_report(); }
+
 /// The report, also of a run that was stopped; none in a build that has none.
 void write_page(const Sequence& sequence, const ResolvedRun& run, const RunOutcome& outcome,
                 const CommandLine& line) {
-  if (line.no_report || line.audit_alone || !has_report()) return;
+  if (!makes_report(line)) return;
   const RunOptions& options = run.options;
-  if (outcome.complete && !options.plan_only && has_threshold(run.settings))
+  if (outcome.complete && !options.plan_only && !line.audit_alone && has_threshold(run.settings))
     write_what_if(sequence, run.settings, {options.first_frame, options.last_frame}, outcome.summary,
                   options.out);
   write_report({options.out}, {}, !line.no_thumbnails);
@@ -76,7 +78,8 @@ void write_page(const Sequence& sequence, const ResolvedRun& run, const RunOutco
 int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool>& stop, std::ostream& out) {
   using oneapi::tbb::global_control;
   const Sequence sequence = load_with_warnings(line);
-  const ResolvedRun resolved = resolve(line, sequence, plan_only);
+  ResolvedRun resolved = resolve(line, sequence, plan_only);
+  resolved.options.changes = makes_report(line);
   std::optional<global_control> threads;
   if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);
   const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop);

@@ -11,6 +11,7 @@
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/words.h"
 #include "sequences/files/errors.h"
+#include "sequences/files/freed_memory.h"
 #include "sequences/view/server.h"
 #include "sequences/view/view_request.h"
 
@@ -122,6 +123,7 @@ int run_view(const ViewOptions& options, const std::atomic<bool>& stop, std::ost
   constexpr int kLargestPort = 65535;
   if (options.port < 0 || options.port > kLargestPort)
     throw InputError("--port is " + std::to_string(options.port) + ", must be from 0 (any) to 65535");
+  share_freed_memory();
   ViewSource source = view_source(options);
   const bool is_readable = source.fault.empty();
   serve_view(std::move(source), options.port, stop, out);

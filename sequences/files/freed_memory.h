@@ -19,4 +19,14 @@ inline void keep_freed_memory() {
 #endif
 }
 
+/// The C library gives threads that allocate at once pools of their own, eight for each core, and what is freed goes back
+/// into the pool that it came from. A server whose requests are answered by whatever thread is free so ends with many
+/// pools, each as large as its largest request ever was. One serves all threads here. For the whole process, before it has
+/// others.
+inline void share_freed_memory() {
+#ifdef __GLIBC__
+  mallopt(M_ARENA_MAX, 1);
+#endif
+}
+
 }  // namespace talisman::sequences

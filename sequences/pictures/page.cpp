@@ -8,6 +8,8 @@
 #include <sstream>
 
 #include "layers/check.h"
+#include "sequences/pictures/page_assets.h"
+#include "sequences/pictures/page_text.h"
 
 namespace talisman::sequences {
 namespace {
@@ -42,27 +44,6 @@ struct MarkdownWriter {
   std::string operator()(const Figure& f) const { return "![" + f.caption + "](" + f.file + ")\n"; }
 };
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  return result;
-}
-
 /// The picture without its XML prolog, which may only stand at the beginning of a document.
 std::string svg_element(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
@@ -83,34 +64,43 @@ std::string with_own_ids(std::string svg, const std::string& prefix) {
   return svg;
 }
 
+/// Writes block after block; headings of the second level can be linked to.
 struct HtmlWriter {
   std::string dir;
-  int figures = 0;
+  int figures = 0, tables = 0, sections = 0;
+  std::string heading{}, contents{};
 
-  std::string operator()(const Heading& h) const {
+  std::string operator()(const Heading& h) {
     const std::string tag = "h" + std::to_string(h.level);
-    return "<" + tag + ">" + escaped(h.text) + "</" + tag + ">\n";
+    heading = h.text;
+    if (h.level != 2) return "<" + tag + ">" + escaped(h.text) + "</" + tag + ">\n";
+    const std::string id = "s" + std::to_string(++sections);
+    contents += "<li><a href=\"#" + id + "\">" + escaped(h.text) + "</a></li>\n";
+    return "<h2 id=\"" + id + "\">" + escaped(h.text) + "</h2>\n";
   }
   std::string operator()(const Paragraph& p) const { return "<p>" + escaped(p.text) + "</p>\n"; }
-  std::string operator()(const Table& table) const {
-    std::string text = "<table>\n" + row(table, table.header, "th");
-    for (const auto& cells : table.rows) text += row(table, cells, "td");
-    return text + "</table>\n";
+  std::string operator()(const Table& table) {
+    std::vector<std::vector<std::string>> rows;
+    for (const auto& cells : table.rows) {
+      TALISMAN_CHECK_EQ(cells.size(), table.header.size());
+      rows.push_back(all_escaped(cells));
+    }
+    const std::string number = std::to_string(++tables);
+    return html_table("t" + number, "", all_escaped(table.header), rows, table.text_columns,
+                      "table " + number + (heading.empty() ? "" : ": " + escaped(heading)));
   }
   std::string operator()(const Figure& f) {
-    const std::string prefix = "f" + std::to_string(++figures) + "-";
-    return "<figure>\n" + with_own_ids(svg_element(dir + "/" + f.file), prefix) + "\n<figcaption>" +
-           escaped(f.caption) + "</figcaption>\n</figure>\n";
+    const std::string prefix = "f" + std::to_string(++figures) + "-", caption = escaped(f.caption);
+    std::string svg = with_own_ids(svg_element(dir + "/" + f.file), prefix);
+    if (svg.find(" role=") == std::string::npos)
+      svg.insert(std::string("<svg").size(), " role=\"img\" aria-label=\"" + caption + "\"");
+    return "<figure>\n" + svg + "\n<figcaption>" + caption + "</figcaption>\n</figure>\n";
   }
 
  private:
-  static std::string row(const Table& table, const std::vector<std::string>& cells, const std::string& tag) {
-    TALISMAN_CHECK_EQ(cells.size(), table.header.size());
-    std::string text = "<tr>";
-    for (std::size_t k = 0; k < cells.size(); ++k)
-      text += "<" + tag + (is_text_column(table, k) ? "" : " class=\"n\"") + ">" + escaped(cells[k]) + "</" +
-              tag + ">";
-    return text + "</tr>\n";
+  static std::vector<std::string> all_escaped(std::vector<std::string> cells) {
+    for (std::string& cell : cells) cell = escaped(cell);
+    return cells;
   }
 };
 
@@ -146,18 +136,18 @@ std::string markdown(const Page& page) {
 }
 
 std::string html(const Page& page, const std::string& dir) {
-  std::string text =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<title>" + escaped(page.title) +
-      "</title>\n<style>\nbody { font: 15px/1.45 sans-serif; max-width: 60em; margin: 2em auto; padding: 0 "
-      "1em; }\n"
-      "table { border-collapse: collapse; margin: 1em 0; }\nth, td { border-bottom: 1px solid #ccc; "
-      "padding: 0.2em 0.7em; text-align: left; vertical-align: top; }\n.n { text-align: right; "
-      "font-variant-numeric: tabular-nums; }\nfigure { margin: 1.5em 0; }\nfigcaption { color: #444; }\n"
-      "svg { max-width: 100%; height: auto; }\n</style>\n</head>\n<body>\n<h1>" +
-      escaped(page.title) + "</h1>\n";
+  constexpr int kFewSections = 3;
   HtmlWriter writer{dir};
-  for (const Block& block : page.blocks) text += std::visit(writer, block);
-  return text + "</body>\n</html>\n";
+  std::string body;
+  for (const Block& block : page.blocks) body += std::visit(writer, block);
+  const std::string contents = writer.sections <= kFewSections ? ""
+                                                               : "<nav aria-label=\"contents\"><ul>\n" +
+                                                                     writer.contents + "</ul></nav>\n";
+  return filled(page_asset("experiment.html"), {{"title", escaped(page.title)},
+                                                {"css", std::string(page_asset("page.css"))},
+                                                {"contents", contents},
+                                                {"body", body},
+                                                {"script", std::string(page_asset("theme.js"))}});
 }
 
 }  // namespace talisman::sequences

@@ -7,6 +7,7 @@
 
 #include "sequences/files/errors.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/report/changes.h"
 
 namespace talisman::sequences {
 
@@ -41,6 +42,7 @@ std::string markdown_of(const ColumnTable<Row>& table) {
 std::map<std::string, std::string> all_tables() {
   return {{decision_table().name, markdown_of(decision_table())},
           {frame_table().name, markdown_of(frame_table())},
+          {change_table().name, markdown_of(change_table())},
           {timing_table().name, markdown_of(timing_table())},
           {layer_table().name, markdown_of(layer_table())},
           {effect_table().name, markdown_of(effect_table())},

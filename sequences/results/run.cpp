@@ -21,6 +21,7 @@
 #include "sequences/results/audit.h"
 #include "sequences/results/column_tables.h"
 #include "sequences/results/exports/sprite_channels.h"
+#include "sequences/results/report/changes.h"
 #include "sequences/results/run_folder.h"
 #include "sequences/results/run_identity.h"
 #include "sequences/results/separate_pictures.h"
@@ -80,6 +81,7 @@ class Runner {
     decisions_ = std::make_unique<LineFile>(options.out + "/decisions.jsonl");
     frames_ = std::make_unique<LineFile>(options.out + "/frames.jsonl", lines_of(kept_));
     timing_ = std::make_unique<LineFile>(options.out + "/timing.jsonl", kept.timing);
+    if (options.changes) changes_ = std::make_unique<LineFile>(options.out + "/changes.jsonl");
     timing_->write(process_json());
     summary_ = start_summary(pipeline_, sequence.name);
     summary_.planned_only = options.plan_only;
@@ -98,6 +100,7 @@ class Runner {
     const auto kept = kept_.find(frame);
     const bool draw = in_range && kept == kept_.end() && prepared_;
     FrameReport report = step(pipeline_, state_, frame, draw ? prepared_.get() : nullptr);
+    if (changes_) write_changes(report, in_range);
     if (!in_range) return;
     add_decisions(summary_, report, state_);
     for (const DecisionRow& row : decision_rows(state_, report)) decisions_->write(json_of(row));
@@ -118,6 +121,7 @@ class Runner {
   void finish(double fps) {
     if (auditor_) summary_.audit = auditor_->finish();
     decisions_->finish();
+    if (changes_) changes_->finish();
     finish_frame_lines();
     timing_->write(total_timing_json(summary_));
     timing_->finish();
@@ -127,6 +131,12 @@ class Runner {
   }
 
  private:
+  void write_changes(const FrameReport& report, bool in_range) {
+    if (in_range)
+      for (const Change& change : changes_in(pipeline_, report, renders_)) changes_->write(json_of(change));
+    renders_.note(report);
+  }
+
   static std::vector<std::string> lines_of(const std::map<int, FrameLine>& frames) {
     std::vector<std::string> lines;
     for (const auto& [frame, line] : frames) lines.push_back(json_of(line));
@@ -188,7 +198,8 @@ class Runner {
   PipelineState state_;
   std::optional<SeamCounter> seams_;
   std::map<int, FrameLine> kept_;
-  std::unique_ptr<LineFile> decisions_, frames_, timing_;
+  std::unique_ptr<LineFile> decisions_, frames_, timing_, changes_;  ///< the last only where it is asked for
+  LastRenders renders_;                                              ///< likewise
   std::unique_ptr<chunker::PreparedScene> prepared_;
   std::optional<Auditor> auditor_;
   Summary summary_;

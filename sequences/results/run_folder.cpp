@@ -83,7 +83,7 @@ KeptRun complete_frames(const RunOptions& options) {
 /// What an earlier run left behind must not be taken for a result of this one. Pictures are removed only where
 /// run.json says that they are ours, and only those with our names.
 void remove_old_results(const RunOptions& options, bool pictures_are_ours) {
-  for (const std::string name : {"decisions.jsonl", "frames.jsonl", "timing.jsonl"})
+  for (const std::string name : {"decisions.jsonl", "frames.jsonl", "timing.jsonl", "changes.jsonl"})
     for (const char* state : {"", ".partial"}) fs::remove(options.out + "/" + name + state);
   for (const char* name : {"summary.json", "what-if.json", "report.html"})
     fs::remove(options.out + "/" + name);

@@ -6,6 +6,7 @@
 ///   run.json             which run this is (run_identity.h)
 ///   frames/NNNN.png      or .exr; the pictures
 ///   decisions.jsonl, frames.jsonl, timing.jsonl    NAME.partial until the run is complete
+///   changes.jsonl        likewise, where the report is made
 ///   summary.json, video.mp4                        of a complete run alone
 ///
 /// A folder holds one run. Another one in its place removes what was left of the first; a plan does not go into

@@ -18,7 +18,8 @@ struct RunOptions {
   bool separate = false;   ///< also each shade sprite alone, and the sums, in DIR/separate
   int audit_every = 0;     ///< every so many reuses of a layer are drawn fresh and compared; 0: none
   bool video = false, overlay = false, quality = false, resume = false;
-  bool force = false;  ///< also into a folder that holds other files
+  bool force = false;    ///< also into a folder that holds other files
+  bool changes = false;  ///< also changes.jsonl (report/changes.h)
   ProgressKind progress = ProgressKind::Auto;
 };
 

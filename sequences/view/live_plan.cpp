@@ -11,6 +11,7 @@
 #include "sequences/pipeline/stopwatch.h"
 #include "sequences/results/column_json.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/report/changes.h"
 #include "sequences/results/report/flat_line.h"
 #include "sequences/view/flights.h"
 
@@ -59,6 +60,13 @@ Json json_of_cell(const Cell& cell) {
 }
 
 }  // namespace
+
+std::vector<ColumnInfo> live_columns() {
+  std::vector<ColumnInfo> columns = flat_columns(decision_table());
+  const std::vector<ColumnInfo> changes = flat_columns(change_table());
+  columns.insert(columns.end(), changes.begin() + kChangeKeys, changes.end());
+  return columns;
+}
 
 LivePlan::LivePlan(LiveScene live)
     : live_(std::move(live)),
@@ -115,13 +123,30 @@ Json LivePlan::rows(int from) const {
           {"frame_lines", lines.take()}};
 }
 
+/// What changed before the frame, by layer, as a line of changes.jsonl.
+std::map<std::string, std::string> LivePlan::changes_of(int frame) const {
+  std::map<std::string, std::string> lines;
+  if (frame < 0 || frame >= planned()) return lines;
+  LastRenders before;
+  for (int f = 0; f < frame; ++f) before.note(planned_[f].report);
+  for (const Change& change : changes_in(pipeline_, planned_[frame].report, before))
+    lines[change.layer] = json_of(change);
+  return lines;
+}
+
 Json LivePlan::frame(int frame) const {
-  const std::vector<ColumnInfo> columns = flat_columns(decision_table());
-  FlatLine line(columns);
+  const std::vector<ColumnInfo> columns = live_columns();
+  const std::map<std::string, std::string> changes = changes_of(frame);
+  FlatLine decision(flat_columns(decision_table())), change(flat_columns(change_table()));
   std::vector<Json> lists(columns.size(), Json::array());
   for_each_row(frame, frame + 1, [&](const DecisionRow& row) {
-    line.read(json_of(row));
-    for (std::size_t k = 0; k < columns.size(); ++k) lists[k].push_back(json_of_cell(line.cells()[k]));
+    decision.read(json_of(row));
+    const auto found = changes.find(row.name);
+    change.read(found == changes.end() ? std::string() : found->second);
+    std::size_t k = 0;
+    for (const Cell& cell : decision.cells()) lists[k++].push_back(json_of_cell(cell));
+    for (std::size_t c = kChangeKeys; c < change.cells().size(); ++c)
+      lists[k++].push_back(json_of_cell(change.cells()[c]));
   });
   Json json = Json::object();
   for (std::size_t k = 0; k < columns.size(); ++k) json[columns[k].name] = std::move(lists[k]);

@@ -4,6 +4,7 @@
 /// The plan of one setting, made slice by slice: the page asks again until it has all frames, so what nobody asks for any
 /// more costs nothing. Its numbers are those of the tables of columns (results/column_tables.h), by their names.
 
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -12,9 +13,13 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "sequences/pipeline/step.h"
+#include "sequences/results/columns.h"
 #include "sequences/view/live_scene.h"
 
 namespace talisman::sequences {
+
+/// Of decisions.jsonl, and behind them those of changes.jsonl (results/report/changes.h).
+std::vector<ColumnInfo> live_columns();
 
 class LivePlan {
  public:
@@ -32,7 +37,7 @@ class LivePlan {
   /// The frames from `from` on that are planned: {"planned", "frames", "decisions": a list per column of the map,
   /// "frame_lines": a list per column of the curves}.
   nlohmann::ordered_json rows(int from) const;
-  /// All columns of one frame, {"columns": a list per column}; of no rows where it is not planned.
+  /// All `live_columns` of one frame, {"columns": a list per column}; of no rows where it is not planned.
   nlohmann::ordered_json frame(int frame) const;
   /// All lines of the frames that are planned, as decisions.jsonl has them.
   std::string lines() const;
@@ -46,6 +51,7 @@ class LivePlan {
     FrameReport report;
     std::vector<PlannedRow> rows;
   };
+  std::map<std::string, std::string> changes_of(int frame) const;
   /// Shows the rows of the planned frames in [from, to).
   template <typename Show>
   void for_each_row(int from, int to, const Show& show) const;

@@ -50,7 +50,7 @@ Json about_json(const ViewSource& source) {
   Json effects = Json::array(), columns = Json::array();
   for (const layers::EffectCall& call : effects_of(variant))
     if (call.called) effects.push_back({{"name", layers::name(call.effect)}, {"why", call.why}});
-  for (const ColumnInfo& column : flat_columns(decision_table()))
+  for (const ColumnInfo& column : live_columns())
     columns.push_back({{"name", column.name}, {"unit", column.unit}, {"meaning", column.meaning}});
   const layers::dmat4 camera = sequence.scene->at(0).camera.world_from_camera;
   return {{"sequence", sequence.name},

@@ -3,7 +3,7 @@
 
 #include "sequences/files/errors.h"
 #include "sequences/files/program_folder.h"
-#include "sequences/results/report/page_assets.h"
+#include "sequences/pictures/page_assets.h"
 #include "sequences/view/http_service.h"
 #include "sequences/view/live_view.h"
 

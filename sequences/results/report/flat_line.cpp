@@ -1,11 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/report/flat_line.h"
 
+#include <cmath>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 namespace talisman::sequences {
+
+double cell_number(const Cell* cell) {
+  const auto* value = cell ? std::get_if<double>(cell) : nullptr;
+  return value ? *value : std::nan("");
+}
+
+double cell_or_0(const Cell* cell) {
+  const double value = cell_number(cell);
+  return std::isnan(value) ? 0 : value;
+}
+
+std::string cell_word(const Cell* cell) {
+  const auto* value = cell ? std::get_if<std::string>(cell) : nullptr;
+  return value ? *value : std::string();
+}
 
 /// Follows the text down the tree of places. A node of -1: no column lies below.
 struct FlatLine::Handler : nlohmann::json_sax<nlohmann::json> {

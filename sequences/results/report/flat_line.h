@@ -16,6 +16,11 @@ namespace talisman::sequences {
 /// std::monostate: null, or not there.
 using Cell = std::variant<std::monostate, double, std::string>;
 
+/// Of a cell that may not be there: its number, else not-a-number, or 0; its word, else none.
+double cell_number(const Cell* cell);
+double cell_or_0(const Cell* cell);
+std::string cell_word(const Cell* cell);
+
 class FlatLine {
  public:
   explicit FlatLine(const std::vector<ColumnInfo>& columns);

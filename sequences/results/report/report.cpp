@@ -6,9 +6,10 @@
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/number_text.h"
+#include "sequences/pictures/page_assets.h"
+#include "sequences/pictures/page_text.h"
+#include "sequences/pictures/scatter.h"
 #include "sequences/results/reason_kind.h"
-#include "sequences/results/report/page_assets.h"
-#include "sequences/results/report/page_text.h"
 #include "sequences/results/report/verdict.h"
 
 namespace talisman::sequences {
@@ -19,6 +20,11 @@ using Json = nlohmann::ordered_json;
 
 /// Rows that a table has without JavaScript; the instrument has all of them.
 constexpr std::size_t kMostRows = 200;
+
+double number_in(const Json& json, const char* key) {
+  const auto value = json.find(key);
+  return value != json.end() && value->is_number() ? value->get<double>() : 0;
+}
 
 std::string page_name(const ReportRun& run) {
   return run.run.value("sequence", "") + (run.run.value("kind", "") == "plan" ? " (plan)" : "");
@@ -112,10 +118,7 @@ std::string what_if_table(const ReportRun& run, const std::string& suffix) {
     return {};
   std::vector<std::vector<std::string>> rows;
   for (const Json& plan : run.what_if["plans"]) {
-    const auto number = [&](const char* key) {
-      const auto value = plan.find(key);
-      return value != plan.end() && value->is_number() ? value->get<double>() : 0;
-    };
+    const auto number = [&](const char* key) { return number_in(plan, key); };
     rows.push_back({formatted("%.4g px", number("geometric_px")), formatted("%.4g ×", number("factor")),
                     number_element(100 * number("mean_update_rate"), 1), large(number("polygons_rendered")),
                     large(number("pixels_rendered")), number_element(number("modelled_drawing_ms")),
@@ -125,6 +128,84 @@ std::string what_if_table(const ReportRun& run, const std::string& suffix) {
       "what-if" + suffix, "What would another threshold cost? Planned with the same sequence",
       {"threshold", "of this run's", "rate %", "polygons", "texels", "modelled drawing ms", "max px"}, rows,
       1);
+}
+
+/// Each run, and what other thresholds would make of it; empty where that is one point alone.
+std::string cost_against_error(const std::vector<ReportRun>& runs) {
+  ScatterPicture scatter{"Cost against error: what was chosen, and half and twice the threshold",
+                         "modelled drawing, ms a frame",
+                         "largest geometric error, px",
+                         {}};
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const ReportRun& run = runs[k];
+    const std::string name = runs.size() > 1 ? std::string(1, static_cast<char>('A' + k)) + ": " : "";
+    const int series = static_cast<int>(k);
+    const bool has_plans =
+        run.what_if.is_object() && run.what_if.contains("plans") && run.what_if["plans"].is_array();
+    if (has_plans)
+      for (const Json& plan : run.what_if["plans"])
+        scatter.points.push_back({number_in(plan, "modelled_drawing_ms"), number_in(plan, "max_geometric_px"),
+                                  series, name + formatted("%.4g px", number_in(plan, "geometric_px"))});
+    else if (run.sums.frames > 0)
+      scatter.points.push_back({run.sums.modelled_drawing_ms / run.sums.frames,
+                                run.worst.empty() ? 0 : run.worst[0].geometric_px, series,
+                                name + page_name(run)});
+  }
+  if (!runs.empty() && runs[0].sums.frames > 0)
+    scatter.points.push_back({runs[0].sums.modelled_reference_ms / runs[0].sums.frames, 0, 2, "reference"});
+  if (scatter.points.size() < 3) return {};
+  return "<figure id=\"cost-error\">\n" + svg(scatter) + "<figcaption>" + escaped(scatter.caption) +
+         "</figcaption></figure>\n";
+}
+
+/// Of a run with --audit: what the fiducials said, and what the pictures say.
+std::string audit_table_of(const ReportRun& run, const std::string& suffix) {
+  if (!run.summary.is_object() || !run.summary.contains("audit") || !run.summary["audit"].is_array())
+    return {};
+  std::vector<std::vector<std::string>> rows;
+  for (const Json& layer : run.summary["audit"]) {
+    if (!layer.is_object() || rows.size() == kMostRows) continue;
+    const auto cell = [&](const char* key) -> std::string {
+      const auto value = layer.find(key);
+      if (value == layer.end()) return {};
+      if (value->is_number_integer()) return std::to_string(value->get<std::int64_t>());
+      return value->is_number()   ? number_element(value->get<double>(), 3)
+             : value->is_string() ? escaped(value->get<std::string>())
+                                  : "";
+    };
+    const std::string sheet = cell("sheet"), name = cell("layer");
+    rows.push_back({sheet.empty()
+                        ? name
+                        : "<a href=\"audit/" + escaped(url_encoded(layer["sheet"].get<std::string>())) +
+                              "\">" + name + "</a>",
+                    layer.value("marked", false) ? "marked" : "", cell("should_have_spoken"), cell("reuses"),
+                    cell("audited"), cell("beyond"), cell("worst_frame"), cell("geometric_px"),
+                    cell("shift_p95_px"), cell("photometric"), cell("rms")});
+  }
+  return html_table("audit" + suffix,
+                    "Audit: did the fiducials tell the truth? Of each layer the worst audited frame",
+                    {"layer", "", "should have spoken", "reuses", "audited", "beyond", "in frame", "said px",
+                     "seen px", "said light", "seen light"},
+                    rows, 3);
+}
+
+/// Layers that one of two runs has and the other has not.
+std::string unmatched_table(const std::vector<ReportRun>& runs) {
+  std::vector<std::vector<std::string>> rows;
+  for (std::size_t k = 0; k < 2; ++k)
+    for (const LayerCounts& layer : runs[k].layers) {
+      const auto& others = runs[1 - k].layers;
+      const bool is_there = std::any_of(others.begin(), others.end(),
+                                        [&](const LayerCounts& other) { return other.name == layer.name; });
+      if (!is_there)
+        rows.push_back(
+            {escaped(layer.name), k == 0 ? "A" : "B", std::to_string(layer.renders), large(layer.pixels)});
+    }
+  const std::size_t all = rows.size();
+  rows.resize(std::min(all, kMostRows));
+  if (rows.empty()) return {};
+  return html_table("unmatched", "Layers of one run alone: " + std::to_string(all),
+                    {"layer", "run", "renders", "texels"}, rows, 2);
 }
 
 std::string run_section(const ReportRun& run, const std::string& suffix, const std::string& heading) {
@@ -145,7 +226,7 @@ std::string run_section(const ReportRun& run, const std::string& suffix, const s
 std::string run_tables(const ReportRun& run, const std::string& suffix, const std::string& heading) {
   const std::string title = suffix.empty() ? "" : "<h2>" + escaped(heading) + "</h2>\n";
   return title + what_if_table(run, suffix) + layers_table(run, suffix) + reasons_table(run, suffix) +
-         worst_table(run, suffix);
+         worst_table(run, suffix) + audit_table_of(run, suffix);
 }
 
 Json page_json(PackedTable& table, const std::string& prefix, std::string& scripts) {
@@ -194,6 +275,7 @@ Json page_json(ReportRun& run, const std::string& prefix, std::string& scripts) 
           {"folder", run.folder},
           {"what", what_ran(run)},
           {"complete", run.is_complete},
+          {"changes", run.has_changes},
           {"run", run.run},
           {"layers", std::move(layers)},
           {"worst", run.worst.empty() ? Json(nullptr)
@@ -221,6 +303,8 @@ std::string report_html(std::vector<ReportRun>& runs) {
     tables += run_tables(runs[k], suffix, heading);
     data["runs"].push_back(page_json(runs[k], std::string(1, static_cast<char>('a' + k)), scripts));
   }
+  if (runs.size() == 2) tables = unmatched_table(runs) + tables;
+  tables = cost_against_error(runs) + tables;
   const auto asset = [](const char* name) { return std::string(page_asset(name)); };
   return filled(page_asset("page.html"), {{"title", escaped(title)},
                                           {"css", asset("page.css") + asset("dygraph.css")},

@@ -8,9 +8,11 @@
 #include <functional>
 #include <iterator>
 
+#include "regulator/profile.h"
 #include "sequences/files/errors.h"
 #include "sequences/results/column_tables.h"
 #include "sequences/results/reason_kind.h"
+#include "sequences/results/report/changes_beside.h"
 #include "sequences/results/report/thumbnails.h"
 
 namespace talisman::sequences {
@@ -63,21 +65,6 @@ void for_each_line_of(const std::string& file, const std::vector<ColumnInfo>& co
     else
       throw InputError("is no line of ours, must be of schema " + schema, file, number);
   }
-}
-
-double cell_number(const Cell* cell) {
-  const auto* value = cell ? std::get_if<double>(cell) : nullptr;
-  return value ? *value : std::nan("");
-}
-
-double cell_or_0(const Cell* cell) {
-  const double value = cell_number(cell);
-  return std::isnan(value) ? 0 : value;
-}
-
-std::string cell_word(const Cell* cell) {
-  const auto* value = cell ? std::get_if<std::string>(cell) : nullptr;
-  return value ? *value : std::string();
 }
 
 /// Adds up decisions.
@@ -193,17 +180,30 @@ int frame_to_look_at(const ReportRun& run) {
   return ((*frames)[0].get<int>() + (*frames)[1].get<int>()) / 2;
 }
 
+/// `columns`: of decisions.jsonl.
 void read_decisions(ReportRun& run, const std::vector<ColumnInfo>& columns) {
   const int wanted = frame_to_look_at(run);
   const std::string file = file_of_lines(run.folder, "decisions.jsonl");
   if (file.empty()) return;
   DecisionTally tally(run);
-  for_each_line_of(file, columns, decision_table().schema, [&](const std::vector<Cell>& row) {
+  ChangesBeside changes(file_of_lines(run.folder, "changes.jsonl"));
+  run.has_changes = changes.is_there();
+  for_each_line_of(file, columns, decision_table().schema, [&](const std::vector<Cell>& decision) {
+    std::vector<Cell> row = decision;
+    changes.append_to(row, static_cast<int>(cell_or_0(run.decisions.cell(row, "frame"))),
+                      cell_word(run.decisions.cell(row, "layer")));
     run.decisions.add(row);
     tally.add(row);
     keep_still(run.still, wanted, run.decisions, row);
   });
   tally.finish();
+}
+
+/// What drawing all that `reference` draws would take on talisman-1996; texels are filled `depth` times.
+double reference_ms(double polygons, double pixels, double depth) {
+  const double filled = pixels * (std::isnan(depth) ? 1 : depth);
+  return regulator::modelled_time(regulator::talisman_1996(), std::llround(polygons), std::llround(filled), 0)
+      .render_ms;
 }
 
 void add_to_sums(FrameSums& sums, const PackedTable& table, const std::vector<Cell>& row) {
@@ -218,6 +218,9 @@ void add_to_sums(FrameSums& sums, const PackedTable& table, const std::vector<Ce
   sums.pixels_reference += cell_or_0(at("pixels_reference"));
   sums.modelled_ms += cell_or_0(at("modelled_ms"));
   sums.modelled_drawing_ms += cell_or_0(at("modelled_drawing_ms"));
+  sums.modelled_reference_ms +=
+      reference_ms(cell_or_0(at("polygons_reference")), cell_or_0(at("pixels_reference")),
+                   cell_number(at("depth_complexity")));
   if (const double flip = cell_number(at("quality_total_flip"));
       !std::isnan(flip) && (!sums.largest_flip || flip > *sums.largest_flip)) {
     sums.largest_flip = flip;
@@ -259,17 +262,20 @@ void leave_out_what_is_too_much(ReportRun& run) {
                                           "resolution",      "geometric_weight",
                                           "uncovered_px",    "turned_px",
                                           "shade_px",        "photometric_color",
-                                          "light_angle_rad", "sprite_xx",
-                                          "sprite_xy",       "sprite_x",
-                                          "sprite_yx",       "sprite_yy",
-                                          "sprite_y",        "sprite_width",
-                                          "sprite_height",   "warp_x",
-                                          "warp_y",          "warp_xx",
-                                          "warp_xy",         "warp_yx",
-                                          "warp_yy",         "warp_wx",
-                                          "warp_wy",         "warp_w",
-                                          "magnification",   "minification",
-                                          "anisotropy"};
+                                          "light_angle_rad", "since_frame",
+                                          "camera_px",       "own_motion_px",
+                                          "light_px",        "other_layers_px",
+                                          "separable",       "error_px",
+                                          "sprite_xx",       "sprite_xy",
+                                          "sprite_x",        "sprite_yx",
+                                          "sprite_yy",       "sprite_y",
+                                          "sprite_width",    "sprite_height",
+                                          "warp_x",          "warp_y",
+                                          "warp_xx",         "warp_xy",
+                                          "warp_yx",         "warp_yy",
+                                          "warp_wx",         "warp_wy",
+                                          "warp_w",          "magnification",
+                                          "minification",    "anisotropy"};
   const auto rank = [&](const std::string& name) {
     return std::find(first.begin(), first.end(), name) - first.begin();
   };
@@ -296,6 +302,8 @@ ReportRun read_report_run(const std::string& folder, bool thumbnails) {
   const std::vector<ColumnInfo> decisions = columns_of_page(flat_columns(decision_table())),
                                 frames = columns_of_page(flat_columns(frame_table())),
                                 timing = columns_of_page(flat_columns(timing_table()));
+  std::vector<ColumnInfo> of_page = decisions;
+  for (const ColumnInfo& column : ChangesBeside::columns_beside()) of_page.push_back(column);
   std::error_code error;
   if (!fs::is_directory(folder, error))
     throw InputError("is no folder, must be that of a render or a plan", folder);
@@ -305,7 +313,7 @@ ReportRun read_report_run(const std::string& folder, bool thumbnails) {
                 nullptr,
                 file_as_json(folder + "/what-if.json"),
                 false,
-                PackedTable(decisions, "layer"),
+                PackedTable(std::move(of_page), "layer"),
                 PackedTable(frames),
                 PackedTable(timing)};
   if (!run.run.is_object() || run.run.value("schema", "").rfind("talisman.run/", 0) != 0 ||

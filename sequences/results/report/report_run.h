@@ -44,8 +44,9 @@ struct WorstDecision {
 struct FrameSums {
   int frames = 0, first = -1, last = -1;
   double polygons = 0, polygons_reference = 0, pixels = 0, pixels_reference = 0;
-  double modelled_ms = 0;                                  ///< of a render
-  double modelled_drawing_ms = 0;                          ///< of it the drawing, as planned
+  double modelled_ms = 0;            ///< of a render
+  double modelled_drawing_ms = 0;    ///< of it the drawing, as planned
+  double modelled_reference_ms = 0;  ///< of `reference` the drawing, by the same profile
   std::optional<double> largest_flip{}, lowest_psnr_db{};  ///< displayed against `direct`; with --quality
   int frame_of_flip = -1;
 };
@@ -74,6 +75,7 @@ struct ReportRun {
   nlohmann::ordered_json run, summary, timing_total, what_if;  ///< null where the file is not there (yet)
   bool is_complete = false;
   PackedTable decisions, frames, timing;
+  bool has_changes = false;             ///< its decisions have the columns of changes.jsonl (changes.h)
   std::vector<std::string> left_out{};  ///< columns of decisions that would make the page too large
   std::vector<LayerCounts> layers{};    ///< in the order in which they appear
   std::vector<ReasonCounts> reasons{};

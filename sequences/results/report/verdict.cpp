@@ -2,7 +2,7 @@
 #include "sequences/results/report/verdict.h"
 
 #include "sequences/files/number_text.h"
-#include "sequences/results/report/page_text.h"
+#include "sequences/pictures/page_text.h"
 
 namespace talisman::sequences {
 
@@ -40,11 +40,14 @@ std::string picture_error(const ReportRun& run) {
   return text + (marked.empty() ? "; the audit marks no layer" : "; the audit marks " + marked);
 }
 
-/// A plan knows what drawing takes, and no more.
-std::string modelled_time(const ReportRun& run) {
-  const bool is_plan = run.run.value("kind", "") == "plan";
-  const double ms = is_plan ? run.sums.modelled_drawing_ms : run.sums.modelled_ms;
-  return formatted("%.3g ms modelled a frame", ms / run.sums.frames) + (is_plan ? " for drawing" : "");
+/// A plan knows what drawing takes, and no more; so it is with what `reference` would draw.
+std::string modelled_ms(const ReportRun& run) {
+  const FrameSums& sums = run.sums;
+  const std::string drawing =
+      formatted("%.3g ms for drawing (reference %.3g ms)", sums.modelled_drawing_ms / sums.frames,
+                sums.modelled_reference_ms / sums.frames);
+  if (run.run.value("kind", "") == "plan") return "modelled " + drawing + " a frame";
+  return formatted("modelled %.3g ms a frame, of it ", sums.modelled_ms / sums.frames) + drawing;
 }
 
 }  // namespace
@@ -72,7 +75,7 @@ std::string verdict_on(const ReportRun& run) {
   std::string text = run.run.value("kind", "") == "plan" ? "Would draw " : "Drew ";
   text += drawn_of(sums.polygons, sums.polygons_reference, "polygons") + " and " +
           drawn_of(sums.pixels, sums.pixels_reference, "texels") + " of what reference draws, " +
-          modelled_time(run);
+          modelled_ms(run);
   const WorstDecision* worst = run.worst.empty() ? nullptr : run.worst.data();
   text += worst ? formatted("; largest error of a fiducial %.4g px", worst->geometric_px) + " (" +
                       worst->layer + ", frame " + std::to_string(worst->frame) + ")"

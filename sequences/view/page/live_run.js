@@ -28,7 +28,7 @@ class LiveRun extends Run {
   constructor(about, answer) {
     const none = {rows: 0, columns: []};
     super({name: about.sequence, folder: about.folder, what: "", run: {kind: "plan", settings: answer.settings}, pictures: [], still: -1,
-           worst: null, complete: false, layers: [], decisions: none, frames: none, timing: none});
+           worst: null, complete: false, changes: true, layers: [], decisions: none, frames: none, timing: none});
     this.decisions = new LiveTable(about.columns);
     this.frames = new LiveTable(Object.keys(answer.frame_lines).map((name) => ({name})));
     Object.assign(this, {first: 0, last: answer.frames - 1, count: answer.frames, planned: 0, layers: [], layerAt: new Map(), kinds: [],

@@ -125,9 +125,9 @@ TEST_F(RunFiles, LeftByAKilledRunGoAndOthersStay) {
   ASSERT_EQ(run(options).exit_code, 0);
   EXPECT_EQ(files_in("o/frames"),
             (std::set<std::string>{".hidden.png", ".tmp-notes", "0000.png", "0001.png", "0002.png"}));
-  EXPECT_EQ(files_in("o"),
-            (std::set<std::string>{"decisions.jsonl", "frames", "frames.jsonl", "report.html", "run.json",
-                                   "summary.json", "timing.jsonl", "what-if.json"}));
+  EXPECT_EQ(files_in("o"), (std::set<std::string>{"changes.jsonl", "decisions.jsonl", "frames",
+                                                  "frames.jsonl", "report.html", "run.json", "summary.json",
+                                                  "timing.jsonl", "what-if.json"}));
 }
 
 /// What a user gets who plans with those thresholds.

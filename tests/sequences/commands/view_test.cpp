@@ -5,7 +5,7 @@
 #include <atomic>
 
 #include "sequences/commands/run_words.h"
-#include "sequences/results/report/page_assets.h"
+#include "sequences/pictures/page_assets.h"
 #include "sequences/view/live_view.h"
 #include "tests/sequences/commands/tool.h"
 

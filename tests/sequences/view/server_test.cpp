@@ -20,7 +20,7 @@
 #include <gtest/gtest.h>
 
 #include "sequences/files/errors.h"
-#include "sequences/results/report/page_assets.h"
+#include "sequences/pictures/page_assets.h"
 
 namespace talisman::sequences {
 namespace {

@@ -33,6 +33,8 @@ function curveRows(run, key) {
 class Curves {
   constructor(box, map) {
     Object.assign(this, {box, map, key: "cost"});
+    // Over the curves, so that another frame does not draw them anew.
+    this.here = element("div", {id: "curve-mark", "aria-hidden": "true"});
     map.moved.push((shown) => {
       if (this.graph) this.graph.updateOptions({dateWindow: [shown.from, shown.to]});
     });
@@ -52,16 +54,21 @@ class Curves {
       interactionModel: {}, animatedZooms: false, height: 110, width: this.map.width,
       axes: {y: {axisLabelWidth: narrow - 6, pixelsPerLabel: 28, axisLabelFormatter: shortNumber}, x: {drawAxis: false, drawGrid: false}},
       axisLabelColor: quiet,
-      underlayCallback: (context, area, graph) => {
-        const x = graph.toDomXCoord(selection.frame), wide = Math.max(2, graph.toDomXCoord(selection.frame + 1) - x);
-        context.fillStyle = css("--mark");
-        context.fillRect(x, area.y, wide, area.h);
-      },
+      legendFormatter: (data) => (data.x === undefined ? "" : `${data.x}: `) + data.series.map((series) =>
+        `<span class="swatch" style="background: ${series.color}"></span>${series.labelHTML}${series.yHTML === undefined ? "" : `: ${series.yHTML}`}`).join(" &nbsp; "),
+      drawCallback: (graph) => this.placeMark(graph),
     });
+    this.box.append(this.here);
+  }
+  placeMark(graph) {
+    const x = graph.toDomXCoord(selection.frame), wide = Math.max(2, graph.toDomXCoord(selection.frame + 1) - x);
+    this.here.style.left = `${x}px`;
+    this.here.style.width = `${wide}px`;
+    this.here.hidden = x < this.map.labels;
   }
   mark() {
     if (!this.graph) return;
-    this.graph.updateOptions({});
+    this.placeMark(this.graph);
     const rows = this.graph.numRows();
     let low = 0, high = rows - 1;
     while (low < high) {

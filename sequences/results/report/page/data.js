@@ -1,4 +1,3 @@
-"use strict";
 // What do the packed columns hold? The way back of results/report/packed_column.h: deflated planes of bytes, each row
 // XORed with the one before of its series. Columns are unpacked when they are asked for.
 

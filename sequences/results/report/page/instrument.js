@@ -14,21 +14,6 @@ function legend() {
   }));
 }
 
-function setUpTheme(again) {
-  const button = document.getElementById("theme"), dark = matchMedia("(prefers-color-scheme: dark)");
-  const isDark = () => (document.documentElement.dataset.theme || (dark.matches ? "dark" : "light")) === "dark";
-  const say = () => (button.textContent = isDark() ? "Light" : "Dark");
-  button.hidden = false;
-  button.setAttribute("aria-label", "change between light and dark");
-  button.addEventListener("click", () => {
-    document.documentElement.dataset.theme = isDark() ? "light" : "dark";
-    say();
-    again();
-  });
-  dark.addEventListener("change", () => { say(); again(); });
-  say();
-}
-
 // The elements of the instrument, by name.
 function layOut(runs) {
   const canvas = element("canvas", {id: "map", tabindex: "0", role: "img",
@@ -53,7 +38,7 @@ function addTools(parts, runs, map, curves) {
   const middle = () => (map.shown.from + map.shown.to) / 2;
   parts.tools.append(
     ...(runs.length > 1 ? [choice("run", {0: `A: ${runs[0].folder}`, 1: `B: ${runs[1].folder}`}, "0", (v) => selection.set({run: Number(v)}))] : []),
-    choice("rows by", {cost: "cost", rate: "rate", error: "error", order: "order", name: "name"}, "cost", (v) => { map.by = v; again(); }),
+    choice("rows by", {cost: "cost", rate: "rate", error: "error", order: "order", name: "name", group: "group of names"}, "cost", (v) => { map.by = v; again(); }),
     choice("colours", modes, "reason", (v) => { map.mode = v; again(); }),
     element("label", {}, "find ", element("input", {type: "search", id: "find", size: "10", oninput: (e) => { map.filter = e.target.value; again(); }})),
     element("span", {class: "buttons"}, zoom("−", "see more frames", () => map.zoom(2, middle())), zoom("+", "see fewer frames", () => map.zoom(0.5, middle())),
@@ -98,6 +83,7 @@ class Instrument {
     document.body.dataset.click_ms = performance.now() - clicked;
   }
   redrawAll() {
+    themeColors.clear();
     this.map.rebuild();
     this.curves.draw();
     this.draw();

@@ -115,6 +115,11 @@ class TimelineMap {
   paintGrid(c, count, height) {
     c.fillStyle = css("--gap");
     for (let k = 1; k <= count; ++k) c.fillRect(this.labels, k * height - 1, this.width, 1);
+    if (this.by === "group") {
+      c.fillStyle = css("--quiet");
+      for (let k = 1; k < count; ++k)
+        if (this.run.groupOf(this.rows[this.top + k]) !== this.run.groupOf(this.rows[this.top + k - 1])) c.fillRect(this.labels, k * height - 1, this.width, 2);
+    }
     const cell = this.x(1) - this.x(0);
     if (cell > 7) for (let f = Math.ceil(this.shown.from); f <= this.shown.to; ++f) c.fillRect(this.x(f) - 0.5, 0, 1, count * height);
     const x = this.x(selection.frame), wide = Math.max(cell, 2), k = this.rows.indexOf(this.run.layerAt.get(selection.layer)) - this.top;

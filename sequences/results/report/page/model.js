@@ -25,7 +25,7 @@ function kindOf(decision, words) {
 class Run {
   constructor(json) {
     Object.assign(this, {name: json.name, folder: json.folder, what: json.what, run: json.run, pictures: json.pictures,
-                         still: json.still, worst: json.worst, complete: json.complete});
+                         still: json.still, worst: json.worst, complete: json.complete, changes: json.changes});
     this.settings = json.run.settings;
     this.totals = json.layers;
     this.decisions = new Table(json.decisions, "layer");
@@ -96,10 +96,25 @@ class Run {
     for (const picture of this.pictures) if (picture.frame <= frame) best = picture;
     return best;
   }
+  // What the author's name of a layer begins with: "horse" of "horse 1", "farm" of "farm/barn".
+  groupOf(layer) {
+    const name = this.layers[layer], slash = name.indexOf("/");
+    return slash > 0 ? name.slice(0, slash) : name.replace(/[\s_.#-]*\d+$/, "") || name;
+  }
   // Layers in the order asked for.
   order(by) {
     const at = [...this.layers.keys()];
     const key = {cost: (k) => -this.totals[k].pixels, rate: (k) => -this.totals[k].renders, error: (k) => -this.totals[k].max_px}[by];
+    if (by === "group") {
+      const costs = new Map(), first = new Map();
+      for (const k of at) {
+        const group = this.groupOf(k);
+        costs.set(group, (costs.get(group) ?? 0) + this.totals[k].pixels);
+        if (!first.has(group)) first.set(group, k);
+      }
+      const groups = at.map((k) => this.groupOf(k));
+      at.sort((a, b) => costs.get(groups[b]) - costs.get(groups[a]) || first.get(groups[a]) - first.get(groups[b]) || this.totals[b].pixels - this.totals[a].pixels || a - b);
+    }
     if (by === "name") at.sort((a, b) => this.layers[a].localeCompare(this.layers[b], undefined, {numeric: true}));
     if (key) at.sort((a, b) => key(a) - key(b) || a - b);
     return at;

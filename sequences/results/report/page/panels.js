@@ -12,6 +12,9 @@ const kFiducials = [
   {name: "anisotropy", column: "anisotropy", limit: "anisotropy", unit: "", off: 0},
   {name: "uncovered edge", column: "uncovered_px", limit: "uncovered_px", unit: "px", off: -1},
   {name: "turned side", column: "turned_px", limit: "turned_px", unit: "px", off: 0}];
+// What may have changed since a sprite was drawn; the error that each would have made alone.
+const kCauses = {camera_px: "camera", own_motion_px: "own motion", light_px: "light", other_layers_px: "other layers"};
+const kOfChanges = ["since_frame", "error_px", "separable", ...Object.keys(kCauses)];
 const kWithLimits = ["threshold", "lookahead", "oracle"];
 const kDone = {rerender: "Drawn again", reuse: "Its sprite is used again", drop: "Not shown"};
 
@@ -48,7 +51,7 @@ class PropertiesPanel {
   }
   draw() {
     const rows = this.rows(), several = this.runs.length > 1;
-    const parts = [element("h3", {}, element("bdi", {}, selection.layer), ` in frame ${selection.frame}`)];
+    const parts = [element("h2", {}, element("bdi", {}, selection.layer), ` in frame ${selection.frame}`)];
     this.runs.forEach((run, k) => {
       const row = rows[k], decision = run.value("decision", row);
       const words = row < 0 ? "No line: the layer is not there in this frame." : `${kDone[decision]}: ${run.value("reason", row) ?? ""}`;
@@ -56,7 +59,7 @@ class PropertiesPanel {
       swatch.style.background = color(run.kind(row));
       parts.push(element("p", {class: "why"}, swatch, several ? element("b", {}, `${"AB"[k]} `) : "", element("bdi", {}, words)));
     });
-    parts.push(this.fiducials(rows), this.rest(rows));
+    parts.push(this.fiducials(rows), this.changes(rows), this.rest(rows));
     this.box.replaceChildren(...parts);
   }
   head(...words) {
@@ -79,11 +82,28 @@ class PropertiesPanel {
     }
     if (lines.length === 0) return element("p", {class: "note"}, "No fiducials: there is no old sprite in view.");
     return element("table", {class: "properties"}, element("caption", {}, "Fiducials of the old sprite against their limits"),
-                   this.head("fiducial", "limit", ""), element("tbody", {}, ...lines));
+                   this.head("fiducial", "limit", "share"), element("tbody", {}, ...lines));
+  }
+  // What the error of the old sprite comes from.
+  changes(rows) {
+    const at = (name) => this.runs.map((run, k) => run.value(name, rows[k])), since = at("since_frame");
+    if (since.every((frame) => frame === null)) {
+      const why = this.runs.every((run) => !run.changes) ? "not known (no changes.jsonl)" : "nothing that moves it";
+      return at("warp_geometric_px").every((error) => error === null) ? "" : element("p", {class: "note", id: "changes"}, `Changed since it was drawn: ${why}.`);
+    }
+    const line = (name, words) => element("tr", {}, element("th", {scope: "row"}, words), ...at(name).map((v) => element("td", {class: "n", "data-column": name}, numberElement(v))));
+    const whole = at("error_px"), several = this.runs.length > 1;
+    const sums = at("separable").map((is, k) => (since[k] === null ? "–" : is === 1 ? "sum up to it" : "not separable"));
+    const frames = [...new Set(since.filter((frame) => frame !== null))].join(" and ");
+    return element("table", {class: "properties", id: "changes"},
+      element("caption", {}, `What changed since its sprite was drawn, as of frame ${frames}: error by each alone`), this.head("cause, px"),
+      element("tbody", {}, ...Object.entries(kCauses).map(([name, words]) => line(name, words)),
+        element("tr", {}, element("th", {scope: "row"}, "all, the geometric error"), ...whole.map((v) => element("td", {class: "n", "data-column": "error_px"}, numberElement(v)))),
+        element("tr", {}, element("th", {scope: "row"}, several ? "the parts" : "these parts"), ...sums.map((words) => element("td", {class: "n sums"}, words)))));
   }
   // All other columns, by what they are about.
   rest(rows) {
-    const skip = new Set(["frame", "layer", "decision", "reason", ...kFiducials.map((f) => f.column)]), lines = [];
+    const skip = new Set(["frame", "layer", "decision", "reason", ...kFiducials.map((f) => f.column), ...kOfChanges]), lines = [];
     const names = [...this.runs[0].decisions.columns.keys()].filter((name) => !skip.has(name));
     const first = ["geometric_px", "frames_since_render", "depicts_frame", "resolution", "cost_polygons", "cost_pixels", "cost_chunks", "cost_bytes", "held_geometric_px", "shade_px"];
     names.sort((a, b) => (first.indexOf(a) + 1 || 99) - (first.indexOf(b) + 1 || 99));

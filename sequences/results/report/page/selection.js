@@ -47,9 +47,12 @@ function numberElement(value) {
   return element("data", {value: String(value), title: String(value)}, text.replace("-", "−"));
 }
 
-function color(kind) {
-  return getComputedStyle(document.documentElement).getPropertyValue(`--kind-${kind}`).trim();
-}
+// Colours of the theme, looked up once: to ask for a style makes the browser work out all of them.
+const themeColors = new Map();
 function css(name) {
-  return getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  if (!themeColors.has(name)) themeColors.set(name, getComputedStyle(document.documentElement).getPropertyValue(name).trim());
+  return themeColors.get(name);
+}
+function color(kind) {
+  return css(`--kind-${kind}`);
 }

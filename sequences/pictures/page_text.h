@@ -26,10 +26,12 @@ std::string number_element(double value, int digits = 3);
 /// 48400 as "48.4 k", 6.73e6 as "6.73 M".
 std::string large(double value);
 
-/// A table with a caption; cells are HTML. Columns after the first `text_columns` are right-aligned.
+/// A table with a caption, in a region of its own that can be scrolled by keys; cells are HTML. Columns after the first
+/// `text_columns` are right-aligned. `label` names the region where there is no caption.
 std::string html_table(const std::string& id, const std::string& caption,
                        const std::vector<std::string>& header,
-                       const std::vector<std::vector<std::string>>& rows, int text_columns);
+                       const std::vector<std::vector<std::string>>& rows, int text_columns,
+                       const std::string& label = {});
 
 /// Every `{{name}}` in the template replaced by its value, once: values are not looked into.
 std::string filled(std::string_view page, const std::vector<std::pair<std::string, std::string>>& values);

@@ -12,7 +12,9 @@ bool has_report();
 
 /// By its name. Empty: there is none.
 ///
-///   page.css, page.js                           what the report and the live view share
+///   page.css, theme.js                          what all pages share; also where there is no report
+///   experiment.html                             the pages of experiments (pictures/page.h); likewise
+///   page.js                                     what the report and the live view share, theme.js in front
 ///   page.html, report.js                        the report
 ///   view.html, view.css, view.js                the live view
 ///   dygraph.js, dygraph.css, dygraph.licence    the library

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/results/report/page_text.h"
+#include "sequences/pictures/page_text.h"
 
 #include <algorithm>
 #include <charconv>
@@ -79,12 +79,14 @@ std::string large(double value) {
 
 std::string html_table(const std::string& id, const std::string& caption,
                        const std::vector<std::string>& header,
-                       const std::vector<std::vector<std::string>>& rows, int text_columns) {
+                       const std::vector<std::vector<std::string>>& rows, int text_columns,
+                       const std::string& label) {
   const auto class_of = [&](std::size_t k) {
     return static_cast<int>(k) < text_columns ? "" : " class=\"n\"";
   };
-  std::string text = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" + caption +
-                     "\"><table id=\"" + id + "\"><caption>" + caption + "</caption>\n<thead><tr>";
+  std::string text = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" +
+                     (caption.empty() ? label : caption) + "\"><table id=\"" + id + "\">" +
+                     (caption.empty() ? "" : "<caption>" + caption + "</caption>") + "\n<thead><tr>";
   for (std::size_t k = 0; k < header.size(); ++k)
     text += "<th scope=\"col\"" + std::string(class_of(k)) + ">" + header[k] + "</th>";
   text += "</tr></thead>\n<tbody>\n";
