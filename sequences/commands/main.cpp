@@ -22,6 +22,7 @@
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/warps.h"
 #include "sequences/files/freed_memory.h"
+#include "sequences/files/terminal_text.h"
 #include "sequences/pictures/diff.h"
 
 namespace {
@@ -31,10 +32,16 @@ using namespace talisman::sequences;
 std::atomic<bool> stop_requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
-extern "C" void on_stop_signal(int) { stop_requested = true; }
+/// What is at work is finished; who asks twice does not wait for it.
+extern "C" void on_stop_signal(int signal) {
+  if (stop_requested.exchange(true)) {
+    std::signal(signal, SIG_DFL);
+    std::raise(signal);
+  }
+}
 
 int fail(const std::string& what, int code) {
-  std::fprintf(stderr, "error: %s\n", what.c_str());
+  std::fprintf(stderr, "error: %s\n", harmless(what, true).c_str());
   return code;
 }
 

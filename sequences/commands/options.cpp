@@ -13,6 +13,7 @@
 #include "sequences/commands/missing_effects.h"
 #include "sequences/commands/words.h"
 #include "sequences/content/own_settings.h"
+#include "sequences/files/terminal_text.h"
 
 namespace talisman::sequences {
 
@@ -246,8 +247,9 @@ void require_none(const std::vector<std::string>& warnings, bool strict, const s
 }
 
 void say_content(const std::vector<std::string>& warnings, const std::vector<std::string>& notes) {
-  for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
-  for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", note.c_str());
+  for (const std::string& warning : warnings)
+    std::fprintf(stderr, "warning: %s\n", harmless(warning).c_str());
+  for (const std::string& note : notes) std::fprintf(stderr, "note: %s\n", harmless(note).c_str());
 }
 
 namespace {

@@ -13,6 +13,7 @@
 #include "sequences/content/scene_builder.h"
 #include "sequences/content/seams.h"
 #include "sequences/content/sequence_file.h"
+#include "sequences/files/number_text.h"
 #include "sequences/files/quoted.h"
 
 namespace talisman::sequences {
@@ -101,10 +102,17 @@ Factoring found_layers(Sequence& sequence, const BuiltScene& built, const std::v
                        const AutoLayers& options) {
   std::vector<layers::LayerSpec> kept = tagged_specs(built.scene, built.layer_tags);
   add_image_layers(images, kept);
-  Factoring found = study({built.scene, std::move(kept), {}, own_settings(sequence)}, options).chosen;
+  FactoringStudy study_of_layers = study({built.scene, std::move(kept), {}, own_settings(sequence)}, options);
+  Factoring& found = study_of_layers.chosen;
   for (const std::string& line : hidden_in_words(found))
     sequence.warnings.push_back(sequence.file + ": " + line);
-  return found;
+  const std::size_t looked_at = study_of_layers.instants.size();
+  if (!found.order.empty() && looked_at < static_cast<std::size_t>(sequence.frames))
+    sequence.notes.push_back(
+        formatted("%zu pair%s of layers whose bounds know no order %s ordered as seen in %zu of %d frames",
+                  found.order.size(), found.order.size() == 1 ? "" : "s",
+                  found.order.size() == 1 ? "is" : "are", looked_at, sequence.frames));
+  return std::move(found);
 }
 
 Sequence load_yaml(const std::string& path, const ContentOptions& options) {

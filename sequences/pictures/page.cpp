@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "layers/check.h"
+#include "sequences/files/terminal_text.h"
 #include "sequences/pictures/page_assets.h"
 #include "sequences/pictures/page_text.h"
 
@@ -115,6 +116,8 @@ std::string plain_text(const Table& table) {
   std::vector<std::size_t> widths(table.header.size(), 0);
   std::vector<std::vector<std::string>> rows{table.header};
   rows.insert(rows.end(), table.rows.begin(), table.rows.end());
+  for (auto& row : rows)
+    for (std::string& cell : row) cell = harmless(cell);
   for (const auto& row : rows)
     for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], columns_of(row[k]));
   std::string text;
