@@ -92,6 +92,23 @@ class FragmentBuffer {
     return has_base(texel) ? base_[texel].color : splat(0);
   }
   bool is_clear(int texel) const { return first_[texel] < 0 && !has_base(texel); }
+  /// Where the only sample is, by which surfaces are told apart then; of more of them at the texel's centre.
+  static float depth_of(const DepthPlane& plane) {
+    if constexpr (kCount == 1)
+      return depth_at(plane, Samples<kCount>::place(0));
+    else
+      return plane.z;
+  }
+  /// The surface that is nearest there, the earlier one where two are; null where the texel is clear.
+  const Fragment* nearest(int texel) const {
+    const Fragment* front = has_base(texel) ? &base_[texel] : nullptr;
+    for (std::int32_t i = first_[texel]; i >= 0; i = pool_[i].next) {
+      const Fragment& other = pool_[i];
+      const float ahead = front == nullptr ? 1 : depth_of(other.depth) - depth_of(front->depth);
+      if (ahead > 0 || (ahead == 0 && other.order < front->order)) front = &other;
+    }
+    return front;
+  }
 
   int live_fragments() const { return live_; }
 

@@ -25,9 +25,11 @@ bool is_nothing(Float4 c) { return c[3] == 0 && c[0] == 0 && c[1] == 0 && c[2] =
 }  // namespace
 
 template <int kCount>
-Chunk ChunkRenderer<kCount>::draw(std::span<const std::uint32_t> triangles, layers::ivec2 origin) {
+Chunk ChunkRenderer<kCount>::draw(std::span<const std::uint32_t> triangles, layers::ivec2 origin,
+                                  DepthChunk* depth) {
   Chunk chunk{};
   origin_ = origin;
+  noted_ = depth;
   counters_.polygon_chunks += static_cast<std::int64_t>(triangles.size());
   const LatticeBox box{0, 0, std::min(kChunkSize, list_.size_px.x - origin.x) - 1,
                        std::min(kChunkSize, list_.size_px.y - origin.y) - 1};
@@ -50,6 +52,19 @@ void ChunkRenderer<kCount>::draw_box(std::span<const std::uint32_t> triangles, c
     for (int x = box.x0; x <= box.x1; ++x) row[x] = buffer_.resolve(y * kChunkSize + x);
     finish_row({&row[box.x0], &row[box.x1] + 1}, box.x0, y, out);
   }
+  if (noted_ != nullptr) note_depth(box);
+}
+
+template <int kCount>
+void ChunkRenderer<kCount>::note_depth(const LatticeBox& box) {
+  for (int y = box.y0; y <= box.y1; ++y)
+    for (int x = box.x0; x <= box.x1; ++x) {
+      const int texel = y * kChunkSize + x;
+      const Fragment* front = buffer_.nearest(texel);
+      if (front == nullptr) continue;
+      noted_->z[texel] = FragmentBuffer<kCount>::depth_of(front->depth);
+      noted_->part[texel] = list_.triangles[front->order].batch;
+    }
 }
 
 template <int kCount>

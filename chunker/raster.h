@@ -9,6 +9,7 @@
 #include "chunker/draw_list.h"
 #include "chunker/fragment.h"
 #include "chunker/multipass.h"
+#include "chunker/plan_buffer.h"
 #include "chunker/shade_batch.h"
 #include "chunker/sprite.h"
 
@@ -27,13 +28,16 @@ class ChunkRenderer {
   /// the fragments do not fit the chunk is drawn again in quarters, each again in quarters, down to single
   /// texels, for which there is no limit. A texel does not depend on its neighbours, so the bytes are the
   /// same.
-  Chunk draw(std::span<const std::uint32_t> triangles, layers::ivec2 origin);
+  /// With `depth`, which is clear, each texel that something covers gets the depth of the nearest surface, and
+  /// the place of its part in the list.
+  Chunk draw(std::span<const std::uint32_t> triangles, layers::ivec2 origin, DepthChunk* depth = nullptr);
 
   const RenderCounters& counters() const { return counters_; }
 
  private:
   void draw_box(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out);
   void finish_row(std::span<Float4> row, int x0, int y, Chunk& out) const;
+  void note_depth(const LatticeBox& box);
   void count_shading(const Shader& shader);
   void draw_quarters(std::span<const std::uint32_t> triangles, const LatticeBox& box, Chunk& out);
   bool draw_triangles(std::span<const std::uint32_t> triangles, const LatticeBox& box);
@@ -48,6 +52,7 @@ class ChunkRenderer {
   const DrawList& list_;
   const RenderOptions& options_;
   LinearImage* linear_ = nullptr;
+  DepthChunk* noted_ = nullptr;  ///< the depths of the chunk that is drawn
   layers::ivec2 origin_{0, 0};
   FragmentBuffer<kCount> buffer_;
   Coverage coverage_;

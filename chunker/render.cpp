@@ -11,6 +11,7 @@
 
 #include "chunker/chunk_work.h"
 #include "chunker/clip.h"
+#include "chunker/depth_render.h"
 #include "chunker/raster.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
@@ -58,10 +59,10 @@ std::set<int> normal_textures_of(const layers::Scene& scene) {
   return used;
 }
 
-/// Draws every place; finished chunks go to `take(index of the place, chunk)`.
-template <int kCount, typename Take>
+/// For every place, in any order: draw(its index in work.places, renderer of the thread, triangles, first texel).
+template <int kCount, typename Draw>
 RenderCounters draw_chunks(const DrawList& list, const ChunkWork& work, const RenderOptions& options,
-                           LinearImage* linear, const Take& take) {
+                           LinearImage* linear, const Draw& draw) {
   const std::vector<int>& places = work.places;
   const int columns = work.bins.chunks.x;
   tbb::enumerable_thread_specific<ChunkRenderer<kCount>> renderers(
@@ -70,7 +71,7 @@ RenderCounters draw_chunks(const DrawList& list, const ChunkWork& work, const Re
     ChunkRenderer<kCount>& renderer = renderers.local();
     for (std::size_t i = range.begin(); i != range.end(); ++i) {
       const layers::ivec2 origin(places[i] % columns * kChunkSize, places[i] / columns * kChunkSize);
-      take(i, renderer.draw(work.bins.of(places[i]), origin));
+      draw(i, renderer, work.bins.of(places[i]), origin);
     }
   });
   RenderCounters counters;
@@ -80,11 +81,12 @@ RenderCounters draw_chunks(const DrawList& list, const ChunkWork& work, const Re
   return counters;
 }
 
-template <typename Take>
+/// The same with the samples that the options ask for.
+template <typename Draw>
 RenderCounters draw_chunks(const DrawList& list, const ChunkWork& work, const RenderOptions& options,
-                           LinearImage* linear, const Take& take) {
+                           LinearImage* linear, const Draw& draw) {
   return with_samples(options.samples, [&](auto count) {
-    return draw_chunks<decltype(count)::value>(list, work, options, linear, take);
+    return draw_chunks<decltype(count)::value>(list, work, options, linear, draw);
   });
 }
 
@@ -161,7 +163,9 @@ RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& fra
   std::vector<Chunk> chunks(work.places.size());
   RenderResult result;
   result.counters = draw_chunks(list, work, options, nullptr,
-                                [&](std::size_t i, const Chunk& chunk) { chunks[i] = chunk; });
+                                [&](std::size_t i, auto& renderer, auto triangles, layers::ivec2 origin) {
+                                  chunks[i] = renderer.draw(triangles, origin);
+                                });
   result.sprite = Sprite::assemble(list.size_px, work.places, chunks);
   result.counters.chunks_rendered = result.sprite.stored_chunks();
   result.counters.chunks_clear = result.sprite.clear_chunks();
@@ -177,10 +181,44 @@ LinearImage render_linear(const PreparedScene& prepared, const layers::SceneFram
   LinearImage image;
   image.size_px = list.size_px;
   image.texels.resize(static_cast<std::size_t>(list.size_px.x) * list.size_px.y);
-  image.counters = draw_chunks(list, work, options, &image, [](std::size_t, const Chunk&) {});
+  image.counters = draw_chunks(list, work, options, &image,
+                               [](std::size_t, auto& renderer, auto triangles, layers::ivec2 origin) {
+                                 renderer.draw(triangles, origin);
+                               });
   image.counters.chunks_rendered = static_cast<std::int64_t>(work.places.size());
   image.counters.chunks_clear = work.bins.count() - image.counters.chunks_rendered;
   return image;
+}
+
+DepthRenderResult render_with_depth(const PreparedScene& prepared, const layers::SceneFrame& frame,
+                                    std::span<const int> parts, std::span<const std::uint32_t> numbers,
+                                    layers::ivec2 display_px, const RenderOptions& options,
+                                    const ShadeInputs& inputs) {
+  TALISMAN_CHECK_EQ(parts.size(), numbers.size());
+  layers::SpritePlacement whole_display;
+  whole_display.size_px = display_px;
+  DrawList list;
+  const ChunkWork work =
+      set_up_chunks(prepared, frame, parts, display_px, whole_display, options, inputs, list);
+  TALISMAN_CHECK(list.triangles.empty() || list.batches.size() == parts.size());
+  std::vector<Chunk> chunks(work.places.size());
+  std::vector<DepthChunk> depths(work.places.size());
+  DepthRenderResult result{PlanBuffer(display_px), {}};
+  result.counters = draw_chunks(list, work, options, nullptr,
+                                [&](std::size_t i, auto& renderer, auto triangles, layers::ivec2 origin) {
+                                  DepthChunk& depth = depths[i];
+                                  depth.clear();
+                                  chunks[i] = renderer.draw(triangles, origin, &depth);
+                                  for (std::uint32_t& part : depth.part)
+                                    if (part < numbers.size()) part = numbers[part];
+                                });
+  for (std::size_t i = 0; i < chunks.size(); ++i)
+    if (!is_clear_chunk(chunks[i])) {
+      result.buffer.put(work.places[i], chunks[i], depths[i]);
+      ++result.counters.chunks_rendered;
+    }
+  result.counters.chunks_clear = work.bins.count() - result.counters.chunks_rendered;
+  return result;
 }
 
 }  // namespace talisman::chunker

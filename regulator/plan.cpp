@@ -32,6 +32,8 @@ std::string_view name(Policy policy) {
       return "lookahead";
     case Policy::Oracle:
       return "oracle";
+    case Policy::Predictive:
+      return "predictive";
   }
   return "?";
 }
@@ -85,6 +87,8 @@ LayerDecision decide(const FrameBeat& beat, const LayerAssessment& layer, const 
   if (options.policy == Policy::Interpolate) return decide_interpolate(beat, layer, options);
   if (!layer.in_view) return drop(layer);
   if (options.policy == Policy::Direct) return decide_every_frame(layer, "policy: direct");
+  // What of it is drawn follows from the motion ahead, of which an assessment knows nothing.
+  if (options.policy == Policy::Predictive) return decide_every_frame(layer, "policy: predictive");
   if (!layer.has_sprite) return rerender(layer, "first_appearance");
   switch (options.policy) {
     case Policy::Direct:
@@ -96,7 +100,8 @@ LayerDecision decide(const FrameBeat& beat, const LayerAssessment& layer, const 
       return decide_threshold(layer, options);
     case Policy::Hold:
     case Policy::Interpolate:  // decided above
-    case Policy::Budget:       // decides over all layers at once
+    case Policy::Predictive:
+    case Policy::Budget:  // decides over all layers at once
       break;
   }
   return {};
@@ -124,6 +129,7 @@ bool blends(const RegulatorOptions& options) {
     case Policy::Reference:
     case Policy::Hold:    // nothing is carried: the old sprite would stand beside the fresh one
     case Policy::Budget:  // which would have to be spent on fades, too
+    case Policy::Predictive:
       return false;
   }
   return false;
@@ -204,7 +210,13 @@ std::string first_defect(const RegulatorOptions& options) {
     return broken("settle_frames", options.settle_frames, "0 (off) or at least 1");
   if (std::string defect = first_defect(options.thresholds); !defect.empty()) return defect;
   if (options.lookahead.frames < 0) return broken("lookahead_frames", options.lookahead.frames, "at least 0");
+  if (options.policy == Policy::Predictive)
+    if (std::string defect = first_defect(plan_shape(options)); !defect.empty()) return defect;
   return first_defect(options.budget);
+}
+
+PlanShape plan_shape(const RegulatorOptions& options) {
+  return {options.lookahead.frames, options.predictive.children};
 }
 
 bool asks_for_light(const RegulatorOptions& options) {
@@ -217,6 +229,7 @@ bool follows_light(const RegulatorOptions& options) {
     case Policy::Direct:
     case Policy::Reference:
     case Policy::Hold:
+    case Policy::Predictive:
       return false;
     case Policy::Interpolate:
     case Policy::Threshold:
@@ -233,6 +246,7 @@ double expected_reuse_frames(const RegulatorOptions& options, double threshold_d
     case Policy::Direct:
     case Policy::Reference:
     case Policy::Hold:  // shown where it was: nothing new can come into view
+    case Policy::Predictive:
       return 0;
     case Policy::Interpolate:
       return options.hold_frames - 1;

@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "fiducials/fiducials.h"
+#include "regulator/predictive_options.h"
 
 namespace talisman::regulator {
 
@@ -30,10 +31,11 @@ enum class Policy {
   Lookahead,    ///< as Threshold, but drawn as of the instant within N frames that serves longest
   Oracle,       ///< as Lookahead over the whole sequence: the fewest renders under the same bound (of renders
                 ///< alone: not of polygons or pixels)
+  Predictive,   ///< no sprites: what changes in the same frames shares a buffer with depth [F96]
 };
 inline constexpr std::array kAllPolicies = {Policy::Direct,      Policy::Reference, Policy::Hold,
                                             Policy::Interpolate, Policy::Threshold, Policy::Budget,
-                                            Policy::Lookahead,   Policy::Oracle};
+                                            Policy::Lookahead,   Policy::Oracle,    Policy::Predictive};
 std::string_view name(Policy policy);
 std::optional<Policy> policy_from_name(std::string_view text);
 
@@ -103,10 +105,10 @@ struct Thresholds {
   bool operator==(const Thresholds&) const = default;
 };
 
-/// Policy Lookahead.
+/// Policies Lookahead and Predictive.
 struct LookaheadOptions {
   int frames = 16;  ///< N ≥ 0; a sprite may be drawn as of an instant up to N frames ahead; 0 draws as of
-                    ///< now; planning time grows with N, renders fall
+                    ///< now; planning time grows with N, renders fall. Predictive: frames of a slice, ≥ 1
   Prediction predict = Prediction::Known;  ///< what is known ahead; Linear draws more often, since it errs
                                            ///< where the motion bends
   bool operator==(const LookaheadOptions&) const = default;
@@ -161,6 +163,7 @@ struct RegulatorOptions {
   Thresholds thresholds;
   LookaheadOptions lookahead;
   BudgetOptions budget;
+  PredictiveOptions predictive;
   bool operator==(const RegulatorOptions&) const = default;
 };
 
@@ -229,8 +232,11 @@ bool follows_light(const RegulatorOptions& options);
 /// them: budget.ms is budget_ms.
 std::string first_defect(const RegulatorOptions& options);
 
+/// The plan tree of policy Predictive.
+PlanShape plan_shape(const RegulatorOptions& options);
+
 /// For how many later frames a sprite is expected to be moved by a warp: 0 where none is (Direct, Reference,
-/// Hold, or a threshold of 0 px), N - 1 for Interpolate, `threshold_default` for the rest. Extents grow in
+/// Hold, Predictive, or a threshold of 0 px), N - 1 for Interpolate, `threshold_default` for the rest. Extents grow in
 /// proportion.
 double expected_reuse_frames(const RegulatorOptions& options, double threshold_default = 8);
 

@@ -7,6 +7,7 @@
 #include "sequences/commands/accuracy_hard.h"
 #include "sequences/commands/accuracy_regulator.h"
 #include "sequences/commands/accuracy_renderer.h"
+#include "sequences/commands/motion/accuracy_predictive.h"
 #include "sequences/commands/words.h"
 #include "sequences/experiments/warps/solver_report.h"
 
@@ -29,19 +30,22 @@ int run_solver_accuracy(const AccuracyOptions& options, std::ostream& out) {
 
 int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
   const bool regulator = !options.regulator.sequence.empty(), renderer = !options.renderer.empty(),
-             factoring = !options.factoring.empty();
-  const int experiments = options.solvers + options.hard + regulator + renderer + factoring;
+             factoring = !options.factoring.empty(), predictive = !options.predictive.empty();
+  const int experiments = options.solvers + options.hard + regulator + renderer + factoring + predictive;
   if (experiments != 1)
     throw InputError(
         "accuracy: " + std::string(experiments == 0 ? "nothing to measure" : "more than one experiment") +
-        ", rule: one of --solvers, --hard, --regulator SEQUENCE, --renderer SEQUENCE, --factoring SEQUENCE");
+        ", rule: one of --solvers, --hard, --regulator SEQUENCE, --renderer SEQUENCE, --factoring SEQUENCE, "
+        "--predictive "
+        "SEQUENCE");
   if (options.solvers) return run_solver_accuracy(options, out);
   if (options.hard)
     return run_hard_accuracy(options.out, choice("--progress", options.progress, kProgressWords), out);
   ExperimentOptions asked = options.regulator;
   asked.progress = options.progress;
   if (regulator) return run_regulator_accuracy(asked, options.out, out);
-  asked.sequence = renderer ? options.renderer : options.factoring;
+  asked.sequence = renderer ? options.renderer : predictive ? options.predictive : options.factoring;
+  if (predictive) return run_predictive_accuracy(asked, options.out, out);
   return renderer ? run_renderer_accuracy(asked, options.out, out)
                   : run_factoring_accuracy(asked, options.out, out);
 }

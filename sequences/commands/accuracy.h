@@ -7,6 +7,7 @@
 ///   --regulator SEQUENCE   of the whole pipeline; accuracy_regulator.h
 ///   --renderer SEQUENCE    of every knob and every effect of the renderer; accuracy_renderer.h
 ///   --factoring SEQUENCE   of shading in sprites of its own; accuracy_factoring.h
+///   --predictive SEQUENCE  of buffers that parts share by their motion; motion/accuracy_predictive.h
 ///   --hard                 nothing: whether every stage gets right what is hard; accuracy_hard.h
 
 #include <iosfwd>
@@ -22,6 +23,7 @@ struct AccuracyOptions {
   ExperimentOptions regulator;  ///< asked for by its sequence
   std::string renderer;         ///< sequence, empty: not asked for; the rest is that of `regulator`
   std::string factoring;        ///< sequence, empty: not asked for; the rest is that of `regulator`
+  std::string predictive;       ///< likewise
   std::string out = "out/accuracy";
   std::string progress = "auto";  ///< auto, bar, plain or none
   /// Boxes per number of points, 1 … 100000; more sharpen the percentiles, cost in proportion.

@@ -42,6 +42,7 @@ constexpr std::array kExamples{
     Examples{"tune", "talisman tune carousel --flip 0.02 --frames 0-23 --size 160x120",
              "talisman tune carousel --budget-ms 8"},
     Examples{"inspect", "talisman inspect carousel --order", "talisman inspect model.glb --parts"},
+    Examples{"motion", "talisman motion carousel --lookahead 16", "talisman motion model.glb --yaml"},
     Examples{"init", "talisman init model.glb > my.yaml", "talisman init model.glb --turntable 10 > my.yaml"},
     Examples{"diff", "talisman diff out/a/frames out/b/frames", "talisman diff a.png b.png --map out/map"},
     Examples{"export", "talisman export out/carousel --csv",
@@ -83,6 +84,7 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_tune(stop);
   add_compare(stop);
   add_inspect();
+  add_motion();
   add_init();
   add_diff();
   add_exports();
@@ -90,7 +92,7 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_reproduce();
   add_accuracy();
   for (const char* command : {"render", "plan", "audit", "explain", "view", "tune", "compare", "inspect",
-                              "init", "warps", "reproduce", "accuracy"})
+                              "motion", "init", "warps", "reproduce", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
   add_examples(app_);
 }
@@ -187,6 +189,24 @@ void CommandTree::add_inspect() {
   command->callback([this] { exit_code_ = run_inspect(inspect_, std::cout); });
 }
 
+void CommandTree::add_motion() {
+  CLI::App* command = app_.add_subcommand(
+      "motion", "what moves when: parts that move as one, their changes, what a plan would draw");
+  OptionGroup(*command, "Options")
+      .option("sequence", motion_.sequence, "name of a sequence, path of its YAML file, or path of a model")
+      .option("--geometric-px", motion_.geometric_px, "what moves by more has changed", "the sequence's")
+      .option("--motion-norm", motion_.norm, "euclid, or axis: along x and along y", "euclid")
+      .option("--lookahead", motion_.lookahead, "frames of a slice, a power of --tree-k", "32")
+      .option("--tree-k", motion_.tree_k, "children of a node of the plan, at least 2", "2")
+      .option("--size", motion_.size, "display, WxH", "the sequence's")
+      .flag("--all", motion_.all, "all groups, however many")
+      .flag("--json", motion_.json, "print JSON, with the words of every part")
+      .flag("--csv", motion_.csv, "print CSV, a row for each part and slice")
+      .flag("--yaml", motion_.yaml, "print the groups as layers to paste");
+  add_content_options(*command, motion_.content);
+  command->callback([this] { exit_code_ = run_motion(motion_, std::cout); });
+}
+
 void CommandTree::add_init() {
   CLI::App* command =
       app_.add_subcommand("init", "a sequence file to begin with, made from a model, on standard output");
@@ -261,6 +281,9 @@ void CommandTree::add_accuracy() {
       .option("--factoring", accuracy_.factoring,
               "SEQUENCE: what it costs that the compositor has only over, predicted and measured, and what "
               "factoring saves")
+      .option("--predictive", accuracy_.predictive,
+              "SEQUENCE: buffers that parts share by their motion, beside sprites: cost, bytes and time "
+              "against error")
       .flag("--hard", accuracy_.hard,
             "cases of every stage that a careless one gets wrong, each with its rule; exit code 1 if one is "
             "broken");

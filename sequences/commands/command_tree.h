@@ -15,6 +15,7 @@
 #include "sequences/commands/export_command.h"
 #include "sequences/commands/init.h"
 #include "sequences/commands/inspect.h"
+#include "sequences/commands/motion/motion_command.h"
 #include "sequences/commands/options.h"
 #include "sequences/commands/report_command.h"
 #include "sequences/commands/reproduce.h"
@@ -44,6 +45,7 @@ class CommandTree {
   void add_tune(const std::atomic<bool>& stop);
   void add_compare(const std::atomic<bool>& stop);
   void add_inspect();
+  void add_motion();
   void add_init();
   void add_diff();
   void add_exports();
@@ -59,6 +61,7 @@ class CommandTree {
   TuneOptions tune_;
   CompareOptions compare_;
   InspectOptions inspect_;
+  MotionCommand motion_;
   InitOptions init_;
   DiffOptions diff_;
   ExportOptions export_;

@@ -25,6 +25,9 @@ constexpr std::array kDecidingOptions = {"geometric-px",
                                          "blend",
                                          "lookahead",
                                          "predict",
+                                         "tree-k",
+                                         "joining",
+                                         "motion-norm",
                                          "photometric",
                                          "light-angle-deg",
                                          "shadow-map-px",
@@ -49,6 +52,7 @@ const char* main_option(Policy policy) {
   switch (policy) {
     case Policy::Threshold:
     case Policy::Oracle:
+    case Policy::Predictive:
       return "geometric-px";
     case Policy::Hold:
     case Policy::Interpolate:

@@ -39,16 +39,18 @@ bool is_read_by(const Group& group, Policy policy) {
 std::vector<Group> groups_of(const CommandLine& line) {
   using enum Policy;
   std::vector<Group> groups = {{{Hold, Interpolate}, {}},
-                               {{Lookahead}, {}},
+                               {{Lookahead, Predictive}, {}},
                                {{Budget}, {}},
-                               {{Threshold, Lookahead, Oracle}, {}},
+                               {{Threshold, Lookahead, Oracle, Predictive}, {}},
                                {{Threshold}, {}},
                                // Budget adds these to the benefit; interpolate follows the light by them.
                                {{Interpolate, Threshold, Budget, Lookahead, Oracle}, {}},
                                {{Interpolate}, {}},
-                               {{Interpolate, Threshold, Lookahead, Oracle}, {}}};
+                               {{Interpolate, Threshold, Lookahead, Oracle}, {}},
+                               {{Predictive}, {}},
+                               {{Lookahead}, {}}};
   Given(groups[0].given)("--hold", line.hold);
-  Given(groups[1].given)("--lookahead", line.lookahead)("--predict", line.predict);
+  Given(groups[1].given)("--lookahead", line.lookahead);
   Given(groups[2].given)("--budget-polygons", line.budget_polygons)("--budget-pixels", line.budget_pixels)(
       "--budget-chunks", line.budget_chunks)("--budget-ms", line.budget_ms)(
       "--min-resolution", line.min_resolution)("--cutoff-px", line.cutoff_px)("--choice", line.choice)(
@@ -59,6 +61,9 @@ std::vector<Group> groups_of(const CommandLine& line) {
       "--turned-px", line.turned_px)("--color-warp", line.color_warp);
   Given(groups[6].given)("--stagger", line.stagger);
   Given(groups[7].given)("--blend", line.blend);
+  Given(groups[8].given)("--tree-k", line.tree_k)("--joining", line.joining)("--motion-norm",
+                                                                             line.motion_norm);
+  Given(groups[9].given)("--predict", line.predict);
   return groups;
 }
 

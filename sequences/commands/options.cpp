@@ -14,6 +14,7 @@
 #include "sequences/commands/words.h"
 #include "sequences/content/own_settings.h"
 #include "sequences/files/terminal_text.h"
+#include "sequences/pipeline/predictive/plan_buffers.h"
 
 namespace talisman::sequences {
 
@@ -108,6 +109,10 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (line.blend) options.blend_frames = *line.blend;
   if (!line.stagger.empty()) options.stagger = choice("--stagger", line.stagger, kSwitchWords);
   if (line.lookahead) options.lookahead.frames = *line.lookahead;
+  if (line.tree_k) options.predictive.children = *line.tree_k;
+  if (!line.joining.empty()) options.predictive.joining = choice("--joining", line.joining, kJoiningWords);
+  if (!line.motion_norm.empty())
+    options.predictive.norm = choice("--motion-norm", line.motion_norm, kMotionNormWords);
   apply_limits(line, options);
   apply_prediction(line, options);
   require_consistent(line, options);
@@ -123,14 +128,15 @@ double positive(const char* option, double value, double largest) {
 /// Sprites are compressed where the sequence or the command line asks for it, and there are sprites.
 std::optional<chunker::CompressionOptions> compression_from(const CommandLine& line, const Sequence& sequence,
                                                             regulator::Policy policy) {
-  const bool has_sprites = policy != regulator::Policy::Direct;
+  const bool has_sprites = policy != regulator::Policy::Direct && policy != regulator::Policy::Predictive;
   if (!line.compression) return has_sprites ? sequence.compression : std::nullopt;
   const int quality = *line.compression;
   if (quality < 0 || quality > 100)
     throw InputError("--compression is " + std::to_string(quality) +
                      ", must be a quality from 1 to 100, or 0 for none");
   if (quality == 0) return std::nullopt;
-  if (!has_sprites) throw InputError("--compression needs sprites, but --policy is direct");
+  if (!has_sprites)
+    throw InputError("--compression needs sprites, but --policy is " + std::string(regulator::name(policy)));
   return chunker::CompressionOptions{quality};
 }
 
@@ -158,12 +164,19 @@ void apply_order(const CommandLine& line, const Sequence& sequence, Settings& se
                        ", rule: only with compositor extended");
 }
 
+int samples_from(int samples) {
+  if (samples != 1 && samples != 4 && samples != 16)
+    throw InputError("--samples is " + std::to_string(samples) + ", must be 1, 4 or 16");
+  return samples;
+}
+
 /// How large, how dense and how shaded sprites are.
 void apply_sprites(const CommandLine& line, const Sequence& sequence, Settings& settings) {
   if (line.expected_reuse)
     settings.extents.expected_reuse_frames = positive("--expected-reuse", *line.expected_reuse, 1e4);
   if (line.resolution) settings.placement.resolution_scale = positive("--resolution", *line.resolution, 4);
   settings.render.shading = chosen("--shading", line.shading, kShadingWords, settings.render.shading);
+  if (line.samples) settings.render.samples = samples_from(*line.samples);
   settings.compression = compression_from(line, sequence, settings.regulator.policy);
   if (settings.compression && regulator::blends(settings.regulator))
     throw InputError("blend_frames is " + std::to_string(settings.regulator.blend_frames) +
@@ -276,12 +289,21 @@ namespace {
 /// What a sprite contributes to a frame is known where sprites are laid over each other.
 void require_sprite_channels(const ResolvedRun& run) {
   if (run.options.format != FrameFormat::ExrLayers) return;
-  if (run.settings.regulator.policy == regulator::Policy::Direct)
-    throw InputError("--format exr-layers needs sprites, but --policy is direct");
+  const regulator::Policy policy = run.settings.regulator.policy;
+  if (policy == regulator::Policy::Direct || policy == regulator::Policy::Predictive)
+    throw InputError("--format exr-layers needs sprites, but --policy is " +
+                     std::string(regulator::name(policy)));
   if (run.settings.compositor == Compositor::Extended)
     throw InputError(
         "--format exr-layers needs sprites that are laid over each other, but --compositor is extended, must "
         "be talisman");
+}
+
+/// Buffers that are joined by depth know no order: what needs one is refused.
+void require_predictable(const Sequence& sequence, const Settings& settings) {
+  if (settings.regulator.policy != regulator::Policy::Predictive) return;
+  if (const std::string why = unpredictable(*sequence.scene, sequence.layers); !why.empty())
+    throw InputError("--policy is 'predictive', but " + why, sequence.file);
 }
 
 }  // namespace
@@ -290,6 +312,7 @@ ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan
   ResolvedRun run{settings_of(line, sequence), run_options_of(line, sequence, plan_only)};
   require_built_effects(sequence, run.settings);
   require_sprite_channels(run);
+  require_predictable(sequence, run.settings);
   return run;
 }
 

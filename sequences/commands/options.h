@@ -34,6 +34,8 @@ struct CommandLine {
   std::optional<double> geometric_px, cutoff_px, budget_ms, min_resolution, expected_reuse, resolution;
   std::optional<double> photometric, light_angle_deg, turned_px, shadow_map_px, depth_complexity;
   std::string color_warp, stagger, late_chunks;  ///< "on", "off"
+  std::string joining, motion_norm;
+  std::optional<int> tree_k, samples;
   std::optional<int> hold, blend, lookahead, material_points;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says
   std::optional<std::int64_t> budget_polygons, budget_pixels, budget_chunks;

@@ -43,12 +43,23 @@ void add_policy(CLI::App& command, CommandLine& line) {
               "a sprite that is drawn again fades in over K frames; the old one may be off by twice the "
               "threshold; 0: at once",
               std::to_string(kUsual.blend_frames))
-      .option("--lookahead", line.lookahead,
-              "policy lookahead: frames ahead as of which a sprite may be drawn",
-              std::to_string(kUsual.lookahead.frames))
+      .option(
+          "--lookahead", line.lookahead,
+          "policy lookahead: frames ahead as of which a sprite may be drawn; predictive: frames of a slice, "
+          "a power of --tree-k",
+          std::to_string(kUsual.lookahead.frames))
       .option("--predict", line.predict,
               "policy lookahead: frames ahead are known, or linear: extrapolated from the last two",
-              std::string(word_of(kUsual.lookahead.predict, kPredictionWords)));
+              std::string(word_of(kUsual.lookahead.predict, kPredictionWords)))
+      .option("--tree-k", line.tree_k,
+              "policy predictive: into how many parts an interval of the plan is cut",
+              std::to_string(kUsual.predictive.children))
+      .option("--joining", line.joining,
+              "policy predictive: " + alternatives(kJoiningWords) + ": how the buffers become a frame",
+              std::string(word_of(kUsual.predictive.joining, kJoiningWords)))
+      .option("--motion-norm", line.motion_norm,
+              "policy predictive: --geometric-px in any direction (euclid), or along x and along y (axis)",
+              std::string(word_of(kUsual.predictive.norm, kMotionNormWords)));
 }
 
 void add_thresholds(CLI::App& command, CommandLine& line) {
@@ -120,6 +131,8 @@ void add_layers(CLI::App& command, CommandLine& line) {
 void add_drawing(OptionGroup group, CommandLine& line) {
   group.option("--shading", line.shading, alternatives(kShadingWords),
                std::string(word_of(chunker::RenderOptions().shading, kShadingWords)));
+  group.option("--samples", line.samples, "of coverage and depth for each pixel: 1, 4 or 16",
+               std::to_string(chunker::RenderOptions().samples));
   group.option("--resolution", line.resolution, "sprite texels per display pixel, each axis",
                shown(layers::PlacementOptions().resolution_scale));
   group.option("--compression", line.compression,

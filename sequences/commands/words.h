@@ -78,6 +78,10 @@ Words<T, N> words_of(const std::array<T, N>& values) {
 inline const auto kCurveWords = words_of(warp::kAllCurves);
 inline const auto kPolicyWords = words_of(regulator::kAllPolicies);
 inline const auto kPredictionWords = words_of(regulator::kAllPredictions);
+inline const auto kJoiningWords = words_of(regulator::kAllJoinings);
+
+inline constexpr Words<regulator::MotionNorm, 2> kMotionNormWords{
+    {{"axis", regulator::MotionNorm::Axis}, {"euclid", regulator::MotionNorm::Euclid}}};
 inline const auto kChoiceRuleWords = words_of(regulator::kAllChoiceRules);
 
 /// "a, b<last>c".

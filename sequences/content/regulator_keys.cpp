@@ -11,6 +11,7 @@ namespace {
 
 using regulator::BudgetOptions;
 using regulator::LookaheadOptions;
+using regulator::PredictiveOptions;
 using regulator::RegulatorOptions;
 using regulator::Thresholds;
 using RegulatorKeys = Table<RegulatorOptions>;
@@ -34,15 +35,44 @@ Format<regulator::ChoiceRule> choice_rule() {
   return choice<regulator::ChoiceRule>({{"paper", Paper}, {"best", Best}});
 }
 
+Format<regulator::Joining> joining() {
+  std::vector<std::pair<std::string, regulator::Joining>> choices;
+  for (const regulator::Joining joining : regulator::kAllJoinings)
+    choices.emplace_back(regulator::name(joining), joining);
+  return choice(choices);
+}
+
+Format<regulator::MotionNorm> motion_norm() {
+  using enum regulator::MotionNorm;
+  return choice<regulator::MotionNorm>({{"axis", Axis}, {"euclid", Euclid}});
+}
+
 Format<int> amount() { return whole(0, std::numeric_limits<int>::max()); }
 
 Table<LookaheadOptions> lookahead_keys() {
   using L = LookaheadOptions;
   return Table<L>()
       .key("lookahead_frames", &L::frames, whole(0, kLongestRun_frames), "frames",
-           "policy lookahead: how far ahead the instant of a sprite may lie")
+           "policy lookahead: how far ahead the instant of a sprite may lie; policy predictive: frames of a "
+           "slice, "
+           "a power of `tree_k`")
       .key("predict", &L::predict, prediction(), "",
            "policy lookahead: motion ahead is known, or goes on as it is");
+}
+
+Table<PredictiveOptions> predictive_keys() {
+  using P = PredictiveOptions;
+  return Table<P>()
+      .key("tree_k", &P::children, whole(2, regulator::kLongestSlice_frames), "",
+           "policy predictive: into how many parts each interval of the plan is cut; more are fewer buffers, "
+           "and "
+           "coarser intervals")
+      .key("joining", &P::joining, joining(), "",
+           "policy predictive: all buffers are joined in each frame, or each begins as a copy of the one "
+           "that it is "
+           "laid over, or goes on in it where nothing else needs that")
+      .key("motion_norm", &P::norm, motion_norm(), "",
+           "policy predictive: geometric_px holds along x and along y, or in any direction");
 }
 
 Table<BudgetOptions> budget_keys() {
@@ -125,7 +155,8 @@ const Table<RegulatorOptions>& regulator_keys() {
                "fits the light now best. "
                "Multipliers only darken; light that grows is drawn again")
           .include(&R::lookahead, lookahead_keys())
-          .include(&R::budget, budget_keys());
+          .include(&R::budget, budget_keys())
+          .include(&R::predictive, predictive_keys());
   return table;
 }
 

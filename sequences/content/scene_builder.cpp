@@ -302,6 +302,7 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);
   for (const ModelRecipe& model : recipe.models) add_model(built, model, recipe.assets);
   add_images_in_world(built, recipe.images, recipe.times);
+  if (recipe.swarm) add_swarm(built.scene, *recipe.swarm, recipe.times.fps, recipe.times.last_s());
   if (recipe.camera) add_camera(built, *recipe.camera, recipe.turntable_s);
   add_lights(built, recipe.lights);
   add_default_view(built.scene, recipe.turntable_s);

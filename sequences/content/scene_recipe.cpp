@@ -3,6 +3,7 @@
 
 #include "sequences/content/bodies.h"
 #include "sequences/content/surroundings.h"
+#include "sequences/content/swarm/swarm_keys.h"
 
 namespace talisman::sequences {
 
@@ -66,7 +67,8 @@ const Table<SceneRecipe>& scene_keys() {
           .otherwise("none")
           .key("terrain", &S::terrain, map_of(terrain_keys()), "", "ground out of pictures")
           .key("sky", &S::sky, map_of(sky_keys()), "", "one part, unlit")
-          .at_least_one_of({"shapes", "models", "images", "terrain", "sky"}, "it shows nothing")
+          .key("swarm", &S::swarm, map_of(swarm_keys()), "", "many small things that move for themselves")
+          .at_least_one_of({"shapes", "models", "images", "terrain", "sky", "swarm"}, "it shows nothing")
           .key("camera", &S::camera, map_of(camera_keys()), "", "from where it is seen")
           .otherwise("an orbit around everything")
           .key("turntable", &S::turntable_s, number(kPositive), "s",

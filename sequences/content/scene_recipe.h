@@ -14,6 +14,7 @@
 #include "sequences/content/motion.h"
 #include "sequences/content/shapes.h"
 #include "sequences/content/sky.h"
+#include "sequences/content/swarm/swarm.h"
 
 namespace talisman::sequences {
 
@@ -60,6 +61,7 @@ struct SceneRecipe {
   ShownTimes times;  ///< of the sequence: which frames of images are read
   std::optional<TerrainContent> terrain;
   std::optional<SkyContent> sky;
+  std::optional<SwarmContent> swarm;
   std::optional<CameraRecipe> camera;
   std::vector<LightRecipe> lights;
   layers::vec3 background{0, 0, 0};
@@ -68,7 +70,7 @@ struct SceneRecipe {
   double turntable_s = 5;           ///< one turn of the orbiting camera, where there is no other
 };
 
-/// The keys background, shapes, models, images, assets, terrain, sky, camera, turntable, lights and exposure of a sequence.
+/// The keys background, shapes, models, images, assets, terrain, sky, swarm, camera, turntable, lights and exposure of a sequence.
 const Table<SceneRecipe>& scene_keys();
 
 }  // namespace talisman::sequences

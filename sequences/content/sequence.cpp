@@ -123,7 +123,8 @@ Sequence load_yaml(const std::string& path, const ContentOptions& options) {
   if (const std::string defect = layers::first_defect(built.scene); !defect.empty())
     throw InputError(defect, path);
   if (built.scene.parts.empty())
-    throw InputError("shows nothing, rule: at least one of shapes, models, images, terrain and sky", path);
+    throw InputError("shows nothing, rule: at least one of shapes, models, images, terrain, sky and swarm",
+                     path);
   std::vector<layers::LayerSpec> specs;
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   Sequence sequence = std::move(file.settings);

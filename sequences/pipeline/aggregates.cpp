@@ -336,7 +336,7 @@ FrameOrder order_layers(const Pipeline& pipeline, PipelineState& state, int fram
   order.merged_into.assign(pipeline.authored.size(), -1);
   const std::vector<LayerState>& states = captured_states(pipeline, state, frame);
   const bool sorts = layers::is_built(layers::Effect::VisibilitySort) && pipeline.sorts_visibility &&
-                     pipeline.settings.regulator.policy != regulator::Policy::Direct;
+                     draws_sprites(pipeline);
   const std::vector<layers::Occluder> occluders = occluders_in_view(pipeline, states, sorts);
   if (!sorts) {
     order.back_to_front = by_group(occluders);

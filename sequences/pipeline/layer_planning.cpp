@@ -108,6 +108,11 @@ bool looks_ahead(const Pipeline& pipeline) {
   return policy == Policy::Lookahead || policy == Policy::Oracle;
 }
 
+bool draws_sprites(const Pipeline& pipeline) {
+  const Policy policy = pipeline.settings.regulator.policy;
+  return policy != Policy::Direct && policy != Policy::Predictive;
+}
+
 bool predicts(const Pipeline& pipeline) {
   return pipeline.settings.regulator.policy == regulator::Policy::Lookahead &&
          pipeline.settings.regulator.lookahead.predict == regulator::Prediction::Linear;

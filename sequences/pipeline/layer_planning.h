@@ -14,6 +14,9 @@ namespace talisman::sequences {
 /// Does the policy draw sprites as of instants other than now?
 bool looks_ahead(const Pipeline& pipeline);
 
+/// Does the policy draw layers one by one, which then need an order?
+bool draws_sprites(const Pipeline& pipeline);
+
 /// Are the frames ahead predicted rather than known?
 bool predicts(const Pipeline& pipeline);
 

@@ -103,7 +103,7 @@ std::vector<CutLine> SeamCounter::cuts_at(const layers::SceneFrame& frame) const
 
 std::optional<std::int64_t> SeamCounter::open_in(const PipelineState& state, const FrameReport& report,
                                                  const chunker::PreparedScene& prepared) const {
-  if (edges_.empty() || pipeline_.settings.regulator.policy == regulator::Policy::Direct) return std::nullopt;
+  if (edges_.empty() || !draws_sprites(pipeline_)) return std::nullopt;
   const auto shares = [&](int layer) { return std::binary_search(layers_.begin(), layers_.end(), layer); };
   std::vector<chunker::PlacedSprite> sprites;
   for (const ShownSprite& shown : report.shown) {

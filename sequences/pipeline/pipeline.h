@@ -6,6 +6,7 @@
 /// sequences/pipeline/step.h.
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -119,6 +120,8 @@ struct DepthMemory {
   double complexity() const { return texels > 0 && filled > texels ? filled / texels : 1; }
 };
 
+class PredictiveMemory;  // sequences/pipeline/predictive/plan_buffers.h
+
 /// All that survives a frame.
 struct PipelineState {
   explicit PipelineState(const Pipeline& pipeline)
@@ -142,6 +145,8 @@ struct PipelineState {
   int now = 0;                            ///< the frame that is planned: what lies ahead may be a prediction
   std::optional<MotionKnown> motion;      ///< what predictions are made from; empty unless they are made
   std::optional<regulator::RegulatorOptions> planned_with;  ///< `captured` was judged under these options
+  std::shared_ptr<PredictiveMemory>
+      predictive;  ///< words and buffers of policy Predictive; null for all others
 };
 
 }  // namespace talisman::sequences

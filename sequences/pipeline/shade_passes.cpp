@@ -318,6 +318,19 @@ chunker::RenderResult draw_in_one_pass(const Drawing& drawing, std::span<const i
   return draw(drawing, contents, placement);
 }
 
+chunker::DepthRenderResult draw_with_depth(const Drawing& drawing, const std::vector<int>& parts,
+                                           std::span<const std::uint32_t> numbers) {
+  std::vector<int> surfaces;
+  for (const Layer& layer : drawing.layers)
+    if (layer.base < 0 && !layer.is_aggregate()) surfaces.push_back(layer.id);
+  Contents contents = all_terms_of(drawing.layers.set(), surfaces, drawing.frame.time_s);
+  contents.parts = parts;
+  const Settings& settings = drawing.pipeline.settings;
+  const LookedUp looked_up(drawing, contents, {});
+  return chunker::render_with_depth(drawing.prepared, drawing.frame, parts, numbers, settings.view.display_px,
+                                    settings.render, looked_up.inputs());
+}
+
 SpriteMultipliers multipliers_at(const Layer& layer, double time_s) {
   SpriteMultipliers m;
   if (!layer.fade.values.empty()) m.alpha = static_cast<float>(layers::value_at(layer.fade, time_s));

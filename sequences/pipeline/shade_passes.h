@@ -18,6 +18,7 @@
 #include <span>
 #include <vector>
 
+#include "chunker/depth_render.h"
 #include "chunker/multipass.h"
 #include "sequences/pipeline/frame_report.h"
 #include "sequences/pipeline/pipeline.h"
@@ -59,6 +60,11 @@ std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const layers:
 /// of the drawing's frame. Fades are left to the compositor: sequences/pipeline/direct_picture.h.
 chunker::RenderResult draw_in_one_pass(const Drawing& drawing, std::span<const int> geometry_layers,
                                        const layers::SpritePlacement& placement);
+
+/// Some parts of the author's layers over the display, as draw_in_one_pass draws them, with depth; `numbers` as in
+/// chunker/depth_render.h. Nothing mirrors.
+chunker::DepthRenderResult draw_with_depth(const Drawing& drawing, const std::vector<int>& parts,
+                                           std::span<const std::uint32_t> numbers);
 
 /// The multipliers of the layer's sprite at a time.
 SpriteMultipliers multipliers_at(const layers::Layer& layer, double time_s);

@@ -18,6 +18,7 @@
 #include "sequences/pipeline/extended_composite.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_beside.h"
+#include "sequences/pipeline/predictive/plan_buffers.h"
 #include "sequences/pipeline/shade_passes.h"
 #include "sequences/pipeline/shadow_map_planning.h"
 #include "sequences/pipeline/stopwatch.h"
@@ -151,6 +152,18 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
     memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
     decision.depicts_frame = memory.depicts_frame;
     memory.frame_shown = report.frame;
+  }
+  finish_shadow_maps(state, report);
+}
+
+/// The same without sprites. A surface is drawn with all terms of its shading, and looks up the maps of them all.
+void remember_predicted(const Pipeline& pipeline, PipelineState& state, const ShadowMapsNow& maps,
+                        FrameReport& report) {
+  plan_predicted(pipeline, state, report);
+  for (const Layer& layer : report.layers) {
+    const int surface = layer.base < 0 ? layer.id : layer.base;
+    if (report.plan.decisions[surface].action == Action::Rerender)
+      look_up_shadow_maps(pipeline, state, maps, layer.id, report.frame, report);
   }
   finish_shadow_maps(state, report);
 }
@@ -354,6 +367,9 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
     result = std::move(picture.composite);
     report.render += picture.render;
     report.times.render_ms = render_watch.ms();
+  } else if (pipeline.settings.regulator.policy == regulator::Policy::Predictive) {
+    result = draw_predicted({pipeline, pipeline.authored, state.shadow_maps, prepared, now}, state, report);
+    report.times.render_ms = render_watch.ms();
   } else {
     if (compression_of(pipeline)) report.compression.emplace();
     draw_missing_sprites(pipeline, state, now, prepared, report);
@@ -403,7 +419,10 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   if (pipeline.settings.budget_gap) report.budget_gap = gap_of(report, maps, options);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   if (measures_depth(pipeline)) measure_depth(pipeline, state, report);
-  remember_renders(pipeline, state, maps, report);
+  if (options.policy == regulator::Policy::Predictive)
+    remember_predicted(pipeline, state, maps, report);
+  else
+    remember_renders(pipeline, state, maps, report);
   const Fades fades = carry_fades(pipeline, state, report);
   explain_order(report);
   report.shown = sprites_shown(pipeline, state, fades, report);

@@ -190,6 +190,29 @@ FrameColumns frame_budget_gap() {
               [](auto& l) -> auto& { return l.budget_gap->exact; })};
 }
 
+FrameColumns frame_predictive() {
+  return {stored<FrameLine>(
+              "predictive_slice", "predictive/slice", "frame", "first frame of the slice",
+              [](auto& l) -> auto& { return l.predictive->slice_first; }),
+          stored<FrameLine>(
+              "predictive_parts", "predictive/parts", "parts", "that the scene shows",
+              [](auto& l) -> auto& { return l.predictive->parts; }),
+          stored<FrameLine>(
+              "predictive_parts_drawn", "predictive/parts_drawn", "parts", "of these, drawn for this frame",
+              [](auto& l) -> auto& { return l.predictive->parts_drawn; }),
+          stored<FrameLine>(
+              "predictive_joins", "predictive/joins", "", "of two buffers that the plan has for this frame",
+              [](auto& l) -> auto& { return l.predictive->joins_planned; }),
+          stored<FrameLine>(
+              "predictive_joins_empty", "predictive/joins_empty", "",
+              "of these, with a buffer into which nothing is drawn",
+              [](auto& l) -> auto& { return l.predictive->joins_without_content; }),
+          stored<FrameLine>(
+              "prediction_vertices", "predictive/vertices", "",
+              "of prediction primitives, projected for the slice: in its first frame",
+              [](auto& l) -> auto& { return l.predictive->prediction_vertices; })};
+}
+
 FrameColumns light_layers() {
   return {stored<FrameLine>(
       "light_beside_px", "light_layers/beside_px", "px",
@@ -259,6 +282,9 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
       {"moving_pictures", "where the scene has image sequences or videos", false,
        [](const FrameLine& l) { return l.upload_bytes.has_value(); },
        [](FrameLine& l) { l.upload_bytes = 0; }},
+      {"predictive", "with --policy predictive", false,
+       [](const FrameLine& l) { return l.predictive.has_value(); },
+       [](FrameLine& l) { l.predictive.emplace(); }},
       {"budget_gap", "with --budget-gap", false, [](const FrameLine& l) { return l.budget_gap.has_value(); },
        [](FrameLine& l) { l.budget_gap.emplace(); }},
       {"quality", "with --quality", false, [](const FrameLine& l) { return l.quality.has_value(); },
@@ -274,6 +300,7 @@ const ColumnTable<FrameLine>& frame_table() {
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
           light_layers(), moving_pictures(), seams(), frame_expressions(), frame_budget_gap(),
+          frame_predictive(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

@@ -45,7 +45,7 @@ void budget(Budget& b, const Visit& visit) {
 template <typename Options, typename Visit>
 void regulator(Options& options, const Visit& visit) {
   auto& [policy, hold_frames, stagger, blend_frames, color_warp, settle_frames, of_thresholds, lookahead,
-         of_budget] = options;
+         of_budget, predictive] = options;
   visit("policy", policy);
   visit("hold_frames", hold_frames);
   visit("stagger", stagger);
@@ -57,6 +57,10 @@ void regulator(Options& options, const Visit& visit) {
   visit("lookahead_frames", lookahead_frames);
   visit("predict", predict);
   budget(of_budget, visit);
+  auto& [children, joining, norm] = predictive;
+  visit("tree_k", children);
+  visit("joining", joining);
+  visit("motion_norm", norm);
 }
 
 template <typename FitOptions, typename Visit>

@@ -113,7 +113,8 @@ TEST(FollowsLight, OnlyWhereOldSpritesAreCarriedByWarps) {
   RegulatorOptions options;
   for (const Policy policy : kAllPolicies) {
     options.policy = policy;
-    const bool warps = policy != Policy::Direct && policy != Policy::Reference && policy != Policy::Hold;
+    const bool warps = policy != Policy::Direct && policy != Policy::Reference && policy != Policy::Hold &&
+                       policy != Policy::Predictive;
     EXPECT_EQ(follows_light(options), warps) << name(policy);
   }
   options.policy = Policy::Threshold;

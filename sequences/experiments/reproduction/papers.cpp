@@ -5,6 +5,8 @@
 #include <set>
 
 #include "sequences/experiments/reproduction/barnyard_pictures.h"
+#include "sequences/experiments/reproduction/fearing/operations.h"
+#include "sequences/experiments/reproduction/fearing/skipped.h"
 #include "sequences/experiments/reproduction/figure_21.h"
 #include "sequences/experiments/reproduction/figure_22.h"
 #include "sequences/experiments/reproduction/figure_23.h"
@@ -26,6 +28,12 @@ Paper lengyel_snyder_1997() {
            figure_22(), figure_23(), figure_24(), fixed_cameras(), shadow_appendix(), published_machine()}};
 }
 
+Paper fearing_1996() {
+  return {"F96",
+          "Fearing, Predictive Rendering, MSc thesis, University of British Columbia 1996",
+          {operation_counts_96(), skipped_polygons_96()}};
+}
+
 std::string known_ids(const std::vector<Paper>& papers) {
   std::string text;
   for (const Paper& paper : papers) {
@@ -44,7 +52,7 @@ bool is_known(const std::vector<Paper>& papers, const std::string& id) {
 
 }  // namespace
 
-std::vector<Paper> all_papers() { return {lengyel_snyder_1997()}; }
+std::vector<Paper> all_papers() { return {lengyel_snyder_1997(), fearing_1996()}; }
 
 std::vector<Paper> chosen_papers(const std::vector<Paper>& papers, const std::vector<std::string>& only) {
   if (only.empty()) return papers;

@@ -68,13 +68,14 @@ TEST_F(Messages, OptionsOfAnotherPolicyAreRefusedWithThePoliciesThatHaveThem) {
                    {"--budget-polygons is no option of policy threshold; policy budget has it"});
   expect_bad_input(plan + "--hold 2",
                    {"--hold is no option of policy threshold; the policies hold and interpolate have it"});
-  expect_bad_input(plan + "--policy oracle --lookahead 4",
-                   {"--lookahead is no option of policy oracle; policy lookahead has it"});
+  expect_bad_input(
+      plan + "--policy oracle --lookahead 4",
+      {"--lookahead is no option of policy oracle; the policies lookahead and predictive have it"});
   expect_bad_input(plan + "--choice best --cutoff-px 1",
                    {"--cutoff-px and --choice are no options of policy threshold; policy budget has them"});
-  expect_bad_input(
-      plan + "--policy reference --geometric-px 2",
-      {"--geometric-px is no option of policy reference; the policies threshold, lookahead and oracle"});
+  expect_bad_input(plan + "--policy reference --geometric-px 2",
+                   {"--geometric-px is no option of policy reference; the policies threshold, lookahead, "
+                    "oracle and predictive"});
   expect_bad_input("explain cube.obj --frame 1 --hold 3", {"--hold is no option of policy threshold"});
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out")) << "nothing was begun";
 }
@@ -91,6 +92,7 @@ TEST_F(Messages, OptionsThatThePolicyReadsAreTakenWithoutAWord) {
        {"--policy budget --budget-polygons 100 --choice best", "--policy hold --hold 2",
         "--policy interpolate --hold 2", "--policy lookahead --lookahead 4 --geometric-px 2 --predict linear",
         "--policy oracle --geometric-px 2",
+        "--policy predictive --lookahead 9 --tree-k 3 --joining copy --motion-norm axis --geometric-px 2",
         "--geometric-px 2 --shadow-map-px 1 --photometric 0.1 --color-warp off"})
     EXPECT_THAT(run("plan cube.obj --progress none --strict " + options + kShort).output,
                 Not(HasSubstr("warning")))
@@ -273,9 +275,8 @@ TEST_F(Messages, WordsOfAnEnumerationAreAllNamed) {
   expect_bad_input(
       "plan cube.obj --warp bend",
       {"must be one of trn, trni, iso, isoi, so, soi, aff, affi, per, peri, per2, per2i, pers, pers2"});
-  expect_bad_input(
-      "plan cube.obj --policy often",
-      {"must be one of direct, reference, hold, interpolate, threshold, budget, lookahead, oracle"});
+  expect_bad_input("plan cube.obj --policy often", {"must be one of direct, reference, hold, interpolate, "
+                                                    "threshold, budget, lookahead, oracle, predictive"});
 }
 
 // --- Runs that are stopped

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// What policy Predictive did for one frame (plan_buffers.h).
+
+#include <cstdint>
+
+#include "chunker/plan_buffer.h"
+
+namespace talisman::sequences {
+
+struct PredictiveReport {
+  int slice_first = 0;                   ///< first frame of the slice
+  int parts = 0, parts_drawn = 0;        ///< shown, and drawn for this frame
+  int joins_planned = 0;                 ///< of two whole buffers, as regulator::joins_of_slice counts them
+  int joins_without_content = 0;         ///< of these: with a node that has no part
+  std::int64_t prediction_vertices = 0;  ///< projected for this frame: those of its slice in its first
+  std::int64_t buffer_bytes = 0;         ///< when drawn: of all buffers, with depth and part
+  chunker::JoinCounters joined;          ///< when drawn: what was joined for this frame
+  bool operator==(const PredictiveReport&) const = default;
+};
+
+}  // namespace talisman::sequences

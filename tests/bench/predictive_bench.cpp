@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// Predictive rendering beside OpenCV: motion of prediction vertices, and joins of buffers with depth.
+//
+//   vertices   projected and compared with where they were: per vertex and frame; peer: perspectiveTransform,
+//              absdiff, and the largest difference
+//   joins      of two whole buffers of colour, depth and part; peers: compare and copyTo with its mask, of each of the
+//              three; memcpy of the bytes that a join reads and writes
+#include <cstring>
+#include <random>
+
+#include <benchmark/benchmark.h>
+#include <glm/gtc/matrix_transform.hpp>
+#include <opencv2/core.hpp>
+
+#include "chunker/plan_buffer.h"
+#include "regulator/projected_motion.h"
+
+namespace talisman {
+namespace {
+
+constexpr int kVertices = 8;  // of a block
+constexpr layers::ivec2 kDisplay{300, 300};
+
+std::vector<layers::dvec3> random_points(int count) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<layers::dvec3> points;
+  for (int i = 0; i < count; ++i) points.emplace_back(unit(random), unit(random), unit(random) - 30);
+  return points;
+}
+
+layers::dmat4 clip_matrix() {
+  layers::CameraState camera;
+  camera.fov_y_rad = 0.8;
+  return layers::clip_from_world(camera, kDisplay);
+}
+
+/// As the words take it: a primitive after the other.
+void motion_of_vertices(benchmark::State& state) {
+  const int count = static_cast<int>(state.range(0));
+  const std::vector<layers::dvec3> points = random_points(count);
+  const layers::dmat4 clip = clip_matrix();
+  std::vector<layers::dvec4> then;
+  for (const layers::dvec3& p : points) then.push_back(clip * layers::dvec4(p, 1));
+  const regulator::DisplayScale scale({}, kDisplay);
+  std::array<layers::dvec4, kVertices> now;
+  for (auto _ : state) {
+    int beyond = 0;
+    for (int first = 0; first + kVertices <= count; first += kVertices) {
+      for (int k = 0; k < kVertices; ++k) now[k] = clip * layers::dvec4(points[first + k], 1);
+      beyond += regulator::sides_outside(now) == 0 &&
+                regulator::is_beyond(regulator::projected_motion({&then[first], kVertices}, now, scale), 0.01,
+                                     regulator::MotionNorm::Euclid);
+    }
+    benchmark::DoNotOptimize(beyond);
+  }
+  state.SetItemsProcessed(state.iterations() * count);
+}
+BENCHMARK(motion_of_vertices)->Arg(8000);
+
+void motion_of_vertices_opencv(benchmark::State& state) {
+  const int count = static_cast<int>(state.range(0));
+  const std::vector<layers::dvec3> points = random_points(count);
+  const layers::dmat4 clip = clip_matrix();
+  cv::Mat from(count, 1, CV_64FC3), then, now, difference, mask;
+  for (int i = 0; i < count; ++i) from.at<cv::Vec3d>(i) = {points[i].x, points[i].y, points[i].z};
+  cv::Mat matrix(4, 4, CV_64F);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) matrix.at<double>(row, column) = clip[column][row];
+  cv::perspectiveTransform(from, then, matrix);
+  for (auto _ : state) {
+    int beyond = 0;
+    for (int first = 0; first + kVertices <= count; first += kVertices) {
+      const cv::Range range(first, first + kVertices);
+      cv::perspectiveTransform(from.rowRange(range), now, matrix);
+      cv::absdiff(now, then.rowRange(range), difference);
+      cv::compare(difference.reshape(1), 0.01 / 150, mask, cv::CMP_GT);
+      beyond += cv::countNonZero(mask) > 0;
+    }
+    benchmark::DoNotOptimize(beyond);
+  }
+  state.SetItemsProcessed(state.iterations() * count);
+}
+BENCHMARK(motion_of_vertices_opencv)->Arg(8000);
+
+/// The same at once: what OpenCV is best at.
+void motion_of_all_vertices_opencv(benchmark::State& state) {
+  const int count = static_cast<int>(state.range(0));
+  const std::vector<layers::dvec3> points = random_points(count);
+  const layers::dmat4 clip = clip_matrix();
+  cv::Mat from(count, 1, CV_64FC3), then, now, difference, mask;
+  for (int i = 0; i < count; ++i) from.at<cv::Vec3d>(i) = {points[i].x, points[i].y, points[i].z};
+  cv::Mat matrix(4, 4, CV_64F);
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 4; ++column) matrix.at<double>(row, column) = clip[column][row];
+  cv::perspectiveTransform(from, then, matrix);
+  for (auto _ : state) {
+    cv::perspectiveTransform(from, now, matrix);
+    cv::absdiff(now, then, difference);
+    cv::compare(difference.reshape(1), 0.01 / 150, mask, cv::CMP_GT);
+    benchmark::DoNotOptimize(cv::countNonZero(mask));
+  }
+  state.SetItemsProcessed(state.iterations() * count);
+}
+BENCHMARK(motion_of_all_vertices_opencv)->Arg(8000);
+
+struct Layered {
+  explicit Layered(layers::ivec2 size_px, unsigned seed) : buffer(size_px) {
+    std::mt19937 random(seed);
+    for (int place = 0; place < buffer.chunks().x * buffer.chunks().y; ++place) {
+      chunker::Chunk color{};
+      chunker::DepthChunk depth;
+      for (int i = 0; i < chunker::kChunkSize * chunker::kChunkSize; ++i) {
+        const unsigned roll = random();
+        color.texels[i] = {static_cast<std::uint8_t>(roll), 1, 2, 255};
+        depth.z[i] = 1.0f / static_cast<float>(1 + roll % 1000);
+        depth.part[i] = roll % 7;
+      }
+      buffer.put(place, color, depth);
+    }
+  }
+  chunker::PlanBuffer buffer;
+};
+
+void join_buffers(benchmark::State& state) {
+  const layers::ivec2 size(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  Layered a(size, 1), b(size, 2);
+  chunker::JoinCounters counters;
+  for (auto _ : state) a.buffer.join(b.buffer, counters);
+  state.SetItemsProcessed(counters.pixels_compared);
+  state.SetBytesProcessed(counters.pixels_compared * 3 * 12);
+}
+BENCHMARK(join_buffers)->Args({300, 300})->Args({1344, 1024});
+
+void join_buffers_opencv(benchmark::State& state) {
+  const int width = static_cast<int>(state.range(0)), height = static_cast<int>(state.range(1));
+  cv::Mat z[2], color[2], part[2], mask;
+  for (int i = 0; i < 2; ++i) {
+    z[i].create(height, width, CV_32F);
+    color[i].create(height, width, CV_8UC4);
+    part[i].create(height, width, CV_32S);
+    cv::randu(z[i], 0, 1);
+    cv::randu(color[i], 0, 255);
+    cv::randu(part[i], 0, 7);
+  }
+  for (auto _ : state) {
+    cv::compare(z[1], z[0], mask, cv::CMP_GT);
+    z[1].copyTo(z[0], mask);
+    color[1].copyTo(color[0], mask);
+    part[1].copyTo(part[0], mask);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * width * height);
+}
+BENCHMARK(join_buffers_opencv)->Args({300, 300})->Args({1344, 1024});
+
+/// As many bytes as a join reads and writes: 24 in, 12 out for each pixel, half of which a copy reads.
+void join_bytes_memcpy(benchmark::State& state) {
+  const std::size_t pixels = static_cast<std::size_t>(state.range(0) * state.range(1)), bytes = pixels * 18;
+  std::vector<char> from(bytes, 1), to(bytes, 2);
+  for (auto _ : state) {
+    std::memcpy(to.data(), from.data(), bytes);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(pixels));
+}
+BENCHMARK(join_bytes_memcpy)->Args({300, 300})->Args({1344, 1024});
+
+}  // namespace
+}  // namespace talisman
