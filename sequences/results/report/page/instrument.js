@@ -65,6 +65,7 @@ class Instrument {
     addEventListener("hashchange", () => selection.set(selection.fromAddress(runs)));
     new ResizeObserver(() => this.resize()).observe(this.parts.canvas.parentElement);
     setUpTheme(() => this.redrawAll());
+    matchMedia("print").addEventListener("change", () => this.redrawAll());
   }
   resize() {
     this.map.paint();
