@@ -10,6 +10,7 @@
 #include "sequences/commands/motion/accuracy_predictive.h"
 #include "sequences/commands/words.h"
 #include "sequences/experiments/warps/solver_report.h"
+#include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {
 namespace {
@@ -36,8 +37,8 @@ int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
     throw InputError(
         "accuracy: " + std::string(experiments == 0 ? "nothing to measure" : "more than one experiment") +
         ", rule: one of --solvers, --hard, --regulator SEQUENCE, --renderer SEQUENCE, --factoring SEQUENCE, "
-        "--predictive "
-        "SEQUENCE");
+        "--predictive SEQUENCE");
+  require_plotter();
   if (options.solvers) return run_solver_accuracy(options, out);
   if (options.hard)
     return run_hard_accuracy(options.out, choice("--progress", options.progress, kProgressWords), out);

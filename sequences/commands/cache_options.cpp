@@ -14,6 +14,8 @@ namespace talisman::sequences {
 namespace {
 
 constexpr std::int64_t kMostMegabytes = 1'000'000'000;  ///< a petabyte
+constexpr std::int64_t kLeastMegabytes = 64;
+constexpr int kLongest_s = 86'400;
 
 void open_cache(const CLI::App& command, const CacheWords& words) {
   const bool is_chosen = command.count("--cache") > 0;
@@ -21,6 +23,13 @@ void open_cache(const CLI::App& command, const CacheWords& words) {
   if (words.megabytes < 1 || words.megabytes > kMostMegabytes)
     throw InputError("--cache-mb is " + std::to_string(words.megabytes) + ", rule: from 1 to " +
                      std::to_string(kMostMegabytes));
+  if (words.import.seconds < 1 || words.import.seconds > kLongest_s)
+    throw InputError("--import-limit-s is " + std::to_string(words.import.seconds) + ", rule: from 1 to " +
+                     std::to_string(kLongest_s));
+  if (words.import.megabytes < kLeastMegabytes || words.import.megabytes > kMostMegabytes)
+    throw InputError("--import-memory-mb is " + std::to_string(words.import.megabytes) + ", rule: from " +
+                     std::to_string(kLeastMegabytes) + " to " + std::to_string(kMostMegabytes));
+  use_import_limits(words.import);
   if (words.none) return use_cache({});
   use_cache({is_chosen ? words.folder : default_cache_folder(), words.megabytes});
 }
@@ -35,6 +44,11 @@ void add_cache_options(CLI::App& command, CacheWords& words) {
               "size of the cache in megabytes; what was used least recently is dropped",
               std::to_string(words.megabytes))
       .flag("--no-cache", words.none, "read and paint all anew, and keep nothing");
+  OptionGroup(command, "Reading models")
+      .option("--import-limit-s", words.import.seconds,
+              "processor time that reading one model may take, seconds", std::to_string(words.import.seconds))
+      .option("--import-memory-mb", words.import.megabytes,
+              "address space that its reader may take, megabytes", std::to_string(words.import.megabytes));
   command.parse_complete_callback([&command, &words] { open_cache(command, words); });
 }
 

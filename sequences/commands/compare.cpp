@@ -19,6 +19,7 @@
 #include "sequences/files/folders.h"
 #include "sequences/files/frame_writer.h"
 #include "sequences/files/video.h"
+#include "sequences/pictures/plot.h"
 #include "sequences/results/finished_run.h"
 #include "sequences/results/run_folder.h"
 
@@ -97,6 +98,13 @@ ComparisonReport compared(const CompareOptions& options, const Sequence& sequenc
   return report;
 }
 
+/// Of the pictures side by side, which stay without it.
+void add_video(const ComparisonReport& report, const std::string& folder) try {
+  write_video(folder, report.fps, FrameFormat::Png, report.frames.first, report.frames.last);
+} catch (const OutputError& error) {
+  throw PartialResult(std::string(error.what()) + "; the tables and the frames are there");
+}
+
 }  // namespace
 
 void add_compare_options(CLI::App& command, CompareOptions& options) {
@@ -117,9 +125,7 @@ int run_compare(const CompareOptions& options, const std::atomic<bool>& stop, st
   using oneapi::tbb::global_control;
   require_settings(options.settings);
   choice("--progress", options.line.progress, kProgressWords);
-  if (options.line.threads < 0)
-    throw InputError("--threads is " + std::to_string(options.line.threads) +
-                     ", must be at least 0 (0: all cores)");
+  require_threads(options.line.threads);
   const Sequence sequence = load_with_warnings(options.line);
   RunOptions run_options;
   const std::vector<ComparedSettings> settings = compared_settings(options, sequence, run_options);
@@ -128,13 +134,14 @@ int run_compare(const CompareOptions& options, const std::atomic<bool>& stop, st
   std::optional<global_control> threads;
   if (options.line.threads > 0)
     threads.emplace(global_control::max_allowed_parallelism, options.line.threads);
+  require_plotter();
+  if (!options.no_video) require_video_encoder();
   make_room(run_options.out);
   const ComparisonReport report = compared(options, sequence, settings, run_options, stop);
   write_report(report, run_options.out);
   finish_report_folder(run_options.out, kMark);
   print_report(report, out);
-  if (!report.is_stopped && !options.no_video)
-    write_video(run_options.out, report.fps, FrameFormat::Png, report.frames.first, report.frames.last);
+  if (!report.is_stopped && !options.no_video) add_video(report, run_options.out);
   out << "\nresults in " << run_options.out << "\n";
   if (!report.is_stopped) return kSuccess;
   std::fprintf(stderr, "error: stopped after %d frames; the tables hold these\n",

@@ -12,6 +12,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/files/number_text.h"
+#include "sequences/files/utf8.h"
 #include "sequences/results/finished_run.h"
 #include "sequences/results/run_difference.h"
 
@@ -29,18 +30,22 @@ nlohmann::json json_of(const Quality& quality, const QualityOptions& options) {
 
 void print_json(const DiffReport& report, const DiffSummary& summary, const DiffOptions& options,
                 const std::optional<RunDifference>& runs, std::ostream& out) {
-  nlohmann::json document{
-      {"schema", "talisman.diff/1"}, {"a", options.a}, {"b", options.b}, {"frames", nlohmann::json::array()}};
+  nlohmann::json document{{"schema", "talisman.diff/1"},
+                          {"a", utf8_from(options.a)},
+                          {"b", utf8_from(options.b)},
+                          {"frames", nlohmann::json::array()}};
   for (const FrameDiff& frame : report.frames) {
     nlohmann::json line = json_of(frame.quality, options.quality);
-    line["name"] = frame.name;
+    line["name"] = utf8_from(frame.name);
     document["frames"].push_back(line);
   }
   const bool has_pictures = !report.frames.empty();
   document["mean"] = has_pictures ? json_of(summary.mean, options.quality) : nlohmann::json();
   document["worst"] = has_pictures ? json_of(summary.worst, options.quality) : nlohmann::json();
-  document["only_a"] = report.only_a;
-  document["only_b"] = report.only_b;
+  for (const auto& [key, names] : {std::pair{"only_a", &report.only_a}, {"only_b", &report.only_b}}) {
+    document[key] = nlohmann::json::array();
+    for (const std::string& name : *names) document[key].push_back(utf8_from(name));
+  }
   if (runs) document["runs"] = json_of(*runs);
   out << document.dump(2) << "\n";
 }

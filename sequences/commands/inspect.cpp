@@ -19,6 +19,7 @@
 #include "sequences/experiments/variant.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/number_text.h"
+#include "sequences/files/utf8.h"
 
 namespace talisman::sequences {
 
@@ -124,9 +125,11 @@ std::string inspection_json(const Sequence& s) {
   for (const layers::EffectCall& call : effects_of(s))
     effects[std::string(layers::name(call.effect))] = {
         {"called", call.called}, {"why", call.why}, {"built", has_effect(call.effect)}};
+  Json warnings = Json::array();  // they speak of files
+  for (const std::string& warning : s.warnings) warnings.push_back(utf8_from(warning));
   const Json json = {{"schema", "talisman.inspect/1"},
                      {"sequence", s.name},
-                     {"file", s.file},
+                     {"file", utf8_from(s.file)},
                      {"frames", s.frames},
                      {"fps", s.fps},
                      {"display_px", {s.display_px.x, s.display_px.y}},
@@ -136,7 +139,7 @@ std::string inspection_json(const Sequence& s) {
                      {"mesh_bytes", memory.mesh_bytes},
                      {"texture_bytes", memory.texture_bytes},
                      {"effects", effects},
-                     {"warnings", s.warnings}};
+                     {"warnings", warnings}};
   return json.dump(2) + "\n";
 }
 

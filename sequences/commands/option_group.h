@@ -52,6 +52,10 @@ class OptionGroup {
     CLI::Option* option = command_.add_option(name, value, meaning)->group(heading_);
     if (!standard.empty()) option->default_str(standard);
     using Number = typename NumberOf<T>::type;
+    if constexpr (std::is_same_v<T, std::string>)
+      option->check([](const std::string& text) {
+        return text.empty() ? std::string("'', rule: not empty") : std::string();
+      });
     if constexpr (std::is_arithmetic_v<Number> && !std::is_same_v<Number, bool>)
       option->check([](const std::string& text) { return number_defect<Number>(text); });
     return *this;

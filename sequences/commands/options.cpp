@@ -13,6 +13,7 @@
 #include "sequences/commands/missing_effects.h"
 #include "sequences/commands/words.h"
 #include "sequences/content/own_settings.h"
+#include "sequences/content/value_type.h"
 #include "sequences/files/terminal_text.h"
 #include "sequences/pipeline/predictive/plan_buffers.h"
 
@@ -21,6 +22,7 @@ namespace talisman::sequences {
 namespace {
 
 constexpr int kLargestDisplay_px = 16384;
+constexpr int kMostThreads = 1024;
 
 std::optional<int> whole_number(std::string_view text) {
   int value = 0;
@@ -118,10 +120,11 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   require_consistent(line, options);
 }
 
+/// Not so small that what is divided by it is infinite either.
 double positive(const char* option, double value, double largest) {
-  if (!(value > 0 && value <= largest))
-    throw InputError(std::string(option) + " is " + std::to_string(value) + ", must be above 0 and at most " +
-                     std::to_string(largest));
+  if (!(value >= kLeast && value <= largest))
+    throw InputError(std::string(option) + " is " + shown(value) + ", must be above 0, from " +
+                     shown(kLeast) + " to " + shown(largest));
   return value;
 }
 
@@ -213,6 +216,7 @@ RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, boo
   options.quality = line.quality;
   options.resume = line.resume;
   options.force = line.force;
+  options.decisions = choice("--decisions", line.decisions, kDecisionLinesWords);
   options.audit_every = line.audit.value_or(0);
   if (line.audit && *line.audit < 1)
     throw InputError("--audit is " + std::to_string(*line.audit) +
@@ -223,12 +227,17 @@ RunOptions run_options_of(const CommandLine& line, const Sequence& sequence, boo
     throw InputError("--video needs frames, but --format is none");
   if (options.overlay && options.format != FrameFormat::Png)
     throw InputError("--overlay is drawn on png frames, but --format is " + line.format);
-  if (line.threads < 0)
-    throw InputError("--threads is " + std::to_string(line.threads) + ", must be at least 0 (0: all cores)");
+  require_threads(line.threads);
   return options;
 }
 
 }  // namespace
+
+void require_threads(int threads) {
+  if (threads < 0 || threads > kMostThreads)
+    throw InputError("--threads is " + std::to_string(threads) +
+                     ", must be at least 0 (0: all cores), and at most " + std::to_string(kMostThreads));
+}
 
 ContentOptions content_options(const ContentWords& words) {
   constexpr double kLargest = 1e9;
@@ -286,13 +295,25 @@ Sequence load_with_warnings(const CommandLine& line) {
 
 namespace {
 
+/// The whole scene in one pass, or out of shared buffers, has none of what these speak of.
+void require_sprites(const CommandLine& line, const ResolvedRun& run) {
+  const regulator::Policy policy = run.settings.regulator.policy;
+  if (policy != regulator::Policy::Direct && policy != regulator::Policy::Predictive) return;
+  const std::pair<const char*, bool> of_sprites[] = {
+      {"--format exr-layers", run.options.format == FrameFormat::ExrLayers},
+      {"--separate", run.options.separate},
+      {"--overlay", run.options.overlay},
+      {"--late-chunks", run.settings.late_chunks && !line.late_chunks.empty()},
+      {line.audit_alone ? "audit" : "--audit", run.options.audit_every > 0}};
+  for (const auto& [option, is_given] : of_sprites)
+    if (is_given)
+      throw InputError(std::string(option) + " needs sprites, but --policy is " +
+                       std::string(regulator::name(policy)));
+}
+
 /// What a sprite contributes to a frame is known where sprites are laid over each other.
 void require_sprite_channels(const ResolvedRun& run) {
   if (run.options.format != FrameFormat::ExrLayers) return;
-  const regulator::Policy policy = run.settings.regulator.policy;
-  if (policy == regulator::Policy::Direct || policy == regulator::Policy::Predictive)
-    throw InputError("--format exr-layers needs sprites, but --policy is " +
-                     std::string(regulator::name(policy)));
   if (run.settings.compositor == Compositor::Extended)
     throw InputError(
         "--format exr-layers needs sprites that are laid over each other, but --compositor is extended, must "
@@ -311,6 +332,7 @@ void require_predictable(const Sequence& sequence, const Settings& settings) {
 ResolvedRun resolve(const CommandLine& line, const Sequence& sequence, bool plan_only) {
   ResolvedRun run{settings_of(line, sequence), run_options_of(line, sequence, plan_only)};
   require_built_effects(sequence, run.settings);
+  require_sprites(line, run);
   require_sprite_channels(run);
   require_predictable(sequence, run.settings);
   return run;

@@ -29,8 +29,8 @@ struct CommandLine {
   std::string out;     ///< empty: out/<name>, for plans out/<name>-plan
   std::string frames;  ///< "A-B", "A" or empty: all; inclusive
   std::string size;    ///< "WxH"
-  std::string policy, predict, choice, warp, bound, cycles, compositor, shading, format = "png",
-                                                                                 progress = "auto";
+  std::string policy, predict, choice, warp, bound, cycles, compositor, shading,
+      format = "png", decisions = "all", progress = "auto";
   std::optional<double> geometric_px, cutoff_px, budget_ms, min_resolution, expected_reuse, resolution;
   std::optional<double> photometric, light_angle_deg, turned_px, shadow_map_px, depth_complexity;
   std::string color_warp, stagger, late_chunks;  ///< "on", "off"
@@ -54,6 +54,9 @@ struct ResolvedRun {
   Settings settings;
   RunOptions options;
 };
+
+/// Throws InputError unless it is a number of threads: 0 (all cores) to 1024.
+void require_threads(int threads);
 
 /// Throws InputError that names option, value and rule.
 ContentOptions content_options(const ContentWords& words);

@@ -65,12 +65,18 @@ bool makes_report(const CommandLine& line) { return !line.no_report && has_repor
 /// The report, also of a run that was stopped; none in a build that has none.
 void write_page(const Sequence& sequence, const ResolvedRun& run, const RunOutcome& outcome,
                 const CommandLine& line) {
-  if (!makes_report(line)) return;
   const RunOptions& options = run.options;
+  if (!makes_report(line) || options.decisions != DecisionLines::All) return;
   if (outcome.complete && !options.plan_only && !line.audit_alone && has_threshold(run.settings))
     write_what_if(sequence, run.settings, {options.first_frame, options.last_frame}, outcome.summary,
                   options.out);
   write_report({options.out}, {}, !line.no_thumbnails);
+}
+
+void require_video(const RunOutcome& outcome) {
+  if (!outcome.without_video.empty())
+    throw PartialResult(outcome.without_video +
+                        "; all frames and results are there, the same command with --resume makes the video");
 }
 
 }  // namespace
@@ -79,25 +85,27 @@ int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool
   using oneapi::tbb::global_control;
   const Sequence sequence = load_with_warnings(line);
   ResolvedRun resolved = resolve(line, sequence, plan_only);
-  resolved.options.changes = makes_report(line);
+  resolved.options.changes = makes_report(line) && resolved.options.decisions == DecisionLines::All;
   std::optional<global_control> threads;
   if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);
   const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop);
   write_page(sequence, resolved, outcome, line);
   say_capped_sprites(outcome.summary, resolved.settings.placement.max_sprite_px);
   if (!outcome.complete) {
-    std::fprintf(stderr, "error: stopped after %zu frames%s\n", outcome.summary.frames.size(),
+    std::fprintf(stderr, "error: stopped after %d frames%s\n", outcome.summary.frame_count(),
                  continuation(resolved.options));
     return kPartialResult;
   }
   const std::vector<std::string> unseen = what_is_not_seen(outcome.summary, sequence.file);
   say(unseen);
   require_none(unseen, line.content.strict, sequence.file);
+  if (line.quiet) require_video(outcome);
   if (line.quiet) return kSuccess;
   if (outcome.frames_kept > 0)
     out << "kept " << outcome.frames_kept << " complete frames of an earlier run\n";
   out << table_of(outcome.summary) << advice_text(sequence, resolved, outcome.summary) << "\nresults in "
       << resolved.options.out << "\n";
+  require_video(outcome);
   return kSuccess;
 }
 

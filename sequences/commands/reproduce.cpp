@@ -10,6 +10,7 @@
 #include "sequences/experiments/reproduction/papers.h"
 #include "sequences/experiments/reproduction/report.h"
 #include "sequences/files/folders.h"
+#include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {
 
@@ -47,6 +48,7 @@ void add_reproduce_options(CLI::App& command, ReproduceOptions& options) {
 int run_reproduce(const ReproduceOptions& options, std::ostream& out) {
   const ProgressKind progress = choice("--progress", options.progress, kProgressWords);
   const std::vector<Paper> papers = chosen_papers(all_papers(), options.only);
+  require_plotter();
   begin_report_folder(options.out, kReproductionMark, "a reproduction");
   PaperBench bench(opened);
   const Reproduction reproduction = reproduce(papers, bench, options.quick, progress);

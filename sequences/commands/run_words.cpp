@@ -27,6 +27,11 @@ void add_run(CLI::App& command, CommandLine& line) {
   add_sequence_option(command, line);
   add_run_group(command, line, "out/NAME; plans: out/NAME-plan")
       .flag("--quiet", line.quiet, "no progress and no table; warnings and errors alone")
+      .option("--decisions", line.decisions,
+              "lines of decisions.jsonl: all, changed (where a layer is drawn, or comes and goes) or none; "
+              "the report, "
+              "explain, diff and a trace need all",
+              line.decisions)
       .flag("--no-report", line.no_report, "leave out report.html, the page of the run")
       .flag("--no-thumbnails", line.no_thumbnails, "the page holds no pictures of frames")
       .flag("--force", line.force, "write into --out though it holds files that are not of a run");

@@ -15,6 +15,7 @@
 #include "sequences/files/errors.h"
 #include "sequences/files/folders.h"
 #include "sequences/files/number_text.h"
+#include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {
 
@@ -105,6 +106,7 @@ int run_tune(const TuneOptions& options, const std::atomic<bool>& stop, std::ost
     threads.emplace(global_control::max_allowed_parallelism, options.line.threads);
   const std::string folder = options.line.out.empty() ? "out/" + sequence.name + "-tune" : options.line.out;
   constexpr const char* kMark = "tune.json";
+  require_plotter();
   begin_report_folder(folder, kMark, "a search for thresholds");
   const TuneReport report = tune(sequence, run.settings, {run.options.first_frame, run.options.last_frame},
                                  goal, folder, run.options.progress, stop);

@@ -9,6 +9,9 @@
 #include "git_commit.h"
 #include "layers/effect.h"
 #include "sequences/commands/missing_effects.h"
+#include "sequences/files/child_process.h"
+#include "sequences/files/program_folder.h"
+#include "sequences/import/confinement.h"
 
 namespace talisman::sequences {
 namespace {
@@ -34,11 +37,17 @@ const char* simd_target() {
   return hwy::TargetName(usable & -usable);  // the lower the bit, the better the target
 }
 
+/// What holds readers of models, as they say themselves.
+std::string confinement() {
+  const ChildResult asked = run_child({importer_program(), kAskForConfinement});
+  return asked.succeeded() ? asked.reason(1) : "talisman_import is not there";
+}
+
 }  // namespace
 
 std::string version_text() {
   return "talisman " TALISMAN_VERSION "\ncommit: " TALISMAN_COMMIT "\neffects: " + effects_text() +
-         "\nsimd: " + simd_target();
+         "\nsimd: " + simd_target() + "\nreaders of models: " + confinement();
 }
 
 }  // namespace talisman::sequences

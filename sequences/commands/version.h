@@ -7,7 +7,7 @@
 
 namespace talisman::sequences {
 
-/// What `talisman --version` prints, four lines: version; commit ("unknown" where it was not built from a git
+/// What `talisman --version` prints, five lines: version; commit ("unknown" where it was not built from a git
 /// checkout of its own, "-dirty" after it where files differ from it); effects built; instruction set that
 /// the inner loops run with on this machine, by its name in Highway.
 std::string version_text();

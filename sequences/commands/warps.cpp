@@ -8,12 +8,14 @@
 #include "sequences/commands/words.h"
 #include "sequences/experiments/warps/experiment.h"
 #include "sequences/experiments/warps/report.h"
+#include "sequences/pictures/plot.h"
 
 namespace talisman::sequences {
 
 int run_warps(const WarpsOptions& options, std::ostream& out) {
   const layers::BoundKind bound = choice("--bound", options.bound, kBoundWords);
   const ProgressKind progress = choice("--progress", options.progress, kProgressWords);
+  require_plotter();
   std::vector<WarpObject> objects;
   std::vector<MissingObject> missing;
   if (options.object.empty())

@@ -22,6 +22,7 @@
 #include "sequences/files/image_io.h"
 #include "sequences/files/progress.h"
 #include "sequences/pipeline/frame_order.h"
+#include "sequences/results/run_options.h"
 #include "warp/warp.h"
 
 namespace talisman::sequences {
@@ -66,6 +67,9 @@ inline constexpr Words<Compositor, 2> kCompositorWords{
 inline constexpr Words<chunker::Shading, 3> kShadingWords{{{"flat", chunker::Shading::Flat},
                                                            {"gouraud", chunker::Shading::Gouraud},
                                                            {"phong", chunker::Shading::Phong}}};
+
+inline constexpr Words<DecisionLines, 3> kDecisionLinesWords{
+    {{"all", DecisionLines::All}, {"changed", DecisionLines::Changed}, {"none", DecisionLines::None}}};
 
 /// Of an enumeration whose library has a name(value) for each.
 template <typename T, std::size_t N>

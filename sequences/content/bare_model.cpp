@@ -128,7 +128,7 @@ void factor_by_motion(BareModel& bare) {
 
 BareModel read_bare_model(const std::string& path, const ContentOptions& options) {
   BareModel bare;
-  bare.model = import_model(path, {}, options.assets);
+  bare.model = import_model(path, import_limits(), options.assets);
   bare.view = {options.turntable_s.value_or(kTurntable_s), options.stage, options.exposure_lx.value_or(1)};
   bare.frames = frames_of_model(bare.model.scene, bare.view.turn_s, bare.fps);
   if (options.exposure_lx) expose(bare.model, *options.exposure_lx);

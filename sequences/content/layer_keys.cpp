@@ -38,11 +38,11 @@ const Table<LayerPreferences>& preference_keys() {
   using P = LayerPreferences;
   static const Table<P> table =
       Table<P>("preferences")
-          .key("resolution_scale", &P::resolution_scale, number({0, 4, true}), "texels/px",
+          .key("resolution_scale", &P::resolution_scale, number({kLeast, 4}), "texels/px",
                "along each axis; cost grows with the square")
           .key("min_update_rate", &P::min_update_rate, number({0, 1}), "renders/frame",
                "drawn at least that often")
-          .key("max_update_rate", &P::max_update_rate, number({0, 1, true}), "renders/frame",
+          .key("max_update_rate", &P::max_update_rate, number({kLeast, 1}), "renders/frame",
                "never drawn more often, after the first time")
           .key("share_of_expected_motion", &P::share_of_expected_motion, number(kNotNegative), "",
                "factor of the growth of extents")

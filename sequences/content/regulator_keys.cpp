@@ -87,7 +87,7 @@ Table<BudgetOptions> budget_keys() {
       .key("budget_ms", &B::ms, number(kNotNegative), "ms",
            "policy budget: modelled render time of each frame, as planned (`modelled_drawing_ms`)")
       .otherwise("no limit")
-      .key("min_resolution", &B::min_resolution, number({0, 1, true}), "",
+      .key("min_resolution", &B::min_resolution, number({kLeast, 1}), "",
            "policy budget: how far sprites may be drawn coarser to fit; 1: never")
       .key("cutoff_px", &B::cutoff_px, number(kNotNegative), "px",
            "policy budget: a layer whose benefit is not above it is not drawn again")

@@ -177,7 +177,7 @@ void keep_parts(layers::Scene& model, const ModelRecipe& recipe) {
 }
 
 void add_model(BuiltScene& built, const ModelRecipe& recipe, const std::vector<std::string>& assets) {
-  ImportedModel model = import_model(recipe.file, {}, assets);
+  ImportedModel model = import_model(recipe.file, import_limits(), assets);
   keep_parts(model.scene, recipe);
   for (const std::string& warning : model.warnings) built.warnings.push_back(recipe.file + ": " + warning);
   append(built.files, files_read(model));

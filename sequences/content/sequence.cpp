@@ -15,6 +15,7 @@
 #include "sequences/content/sequence_file.h"
 #include "sequences/files/number_text.h"
 #include "sequences/files/quoted.h"
+#include "sequences/files/utf8.h"
 
 namespace talisman::sequences {
 
@@ -154,7 +155,7 @@ Sequence load_model(const std::string& path, const ContentOptions& options) {
   BareModel bare = read_bare_model(path, options);
   Sequence sequence;
   sequence.content = options;
-  sequence.name = std::filesystem::path(path).stem().string();
+  sequence.name = utf8_from(std::filesystem::path(path).stem().string());
   sequence.file = path;
   sequence.fps = bare.fps;
   sequence.frames = bare.frames;

@@ -7,6 +7,7 @@
 #include "sequences/content/asset_paths.h"
 #include "sequences/content/factoring/factoring_keys.h"
 #include "sequences/content/regulator_keys.h"
+#include "sequences/files/utf8.h"
 #include "warp/warp.h"
 
 namespace talisman::sequences {
@@ -38,7 +39,7 @@ const Table<PlacementOptions>& placement_keys() {
                "tried for a sprite's axes: more fit tighter")
           .key("min_rotation_gain", &P::min_rotation_gain, number({0, 1}), "",
                "share of area that a turned sprite must save; 1: never turned")
-          .key("resolution_scale", &P::resolution_scale, number({0, 4, true}), "texels/px",
+          .key("resolution_scale", &P::resolution_scale, number({kLeast, 4}), "texels/px",
                "along each axis, of all layers")
           .key("max_sprite_px", &P::max_sprite_px, whole(32, kMaxDisplay_px), "texels",
                "largest side of a sprite: beyond it growth is given up, then resolution");
@@ -81,7 +82,7 @@ Table<SequenceFile> film_keys() {
       .otherwise("the file's name")
       .key("frames", setting(&Sequence::frames), whole(1, kLongestRun_frames), "frames", "how many")
       .required()
-      .key("fps", setting(&Sequence::fps), number({0, 1000, true}), "frames/s", "how fast")
+      .key("fps", setting(&Sequence::fps), number({kLeast, 1000}), "frames/s", "how fast")
       .key("display", setting(&Sequence::display_px), whole_pair(1, kMaxDisplay_px), "px", "width, height")
       .key(
           "seam", setting(&Sequence::seam), choice<Seam>({{"none", Seam::None}, {"auto", Seam::Auto}}), "",
@@ -167,7 +168,7 @@ const Table<SequenceFile>& sequence_keys() {
 SequenceFile read_sequence_file(const std::string& file) {
   SequenceFile result;
   result.settings.file = file;
-  result.settings.name = std::filesystem::path(file).stem().string();
+  result.settings.name = utf8_from(std::filesystem::path(file).stem().string());
   sequence_keys().keys().read(read_with_base(file, 0, result.settings.content_files), &result);
   return result;
 }

@@ -98,7 +98,7 @@ const Table<TerrainContent>& terrain_keys() {
         .key("heights", &TerrainContent::heights_file, asset(), "",
              "grey image; a row is a row of samples, row 0 at z = 0, later rows towards -z, centred in x")
         .required()
-        .key("cell_m", &TerrainContent::cell_m, number({0, 10000, true}), "m", "distance of samples")
+        .key("cell_m", &TerrainContent::cell_m, number({kLeast, 10000}), "m", "distance of samples")
         .custom("height_m", pair({-20000, 20000}).type, read_heights, "m", "at black, at white")
         .otherwise("[0, 150]")
         .key("first_row", &TerrainContent::first_row, whole(0, kMaxHeightMap_rows), "",

@@ -107,7 +107,8 @@ Format<glm::dvec3> direction() {
 Format<glm::dvec3> sides() {
   const auto read = [](const YamlValue& value) {
     const glm::dvec3 size = value.vector();
-    if (!(size.x > 0 && size.y > 0 && size.z > 0)) value.fail("every side above 0");
+    for (int axis = 0; axis < 3; ++axis)
+      if (!kPositive.holds(size[axis])) value.fail(in_words(vector_type(kPositive)));
     return size;
   };
   return {vector_type(kPositive), read, vector_in_brackets};

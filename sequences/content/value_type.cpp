@@ -94,7 +94,7 @@ std::string in_words(const ValueType& type) {
     case Kind::Text:
       return "a text";
     case Kind::Color:
-      return "[r, g, b] in linear light, each at least 0, or \"#rrggbb\" in sRGB";
+      return "[r, g, b] in linear light, each from 0 to 1e+09, or \"#rrggbb\" in sRGB";
     case Kind::Choice:
       return "one of " + joined(type.words);
     case Kind::List:

@@ -22,9 +22,11 @@ struct Range {
   bool holds(double value) const;  ///< false for what is not finite
 };
 
-inline constexpr Range kAnyNumber{};
-inline constexpr Range kPositive{0, std::numeric_limits<double>::max(), true};
-inline constexpr Range kNotNegative{0, std::numeric_limits<double>::max(), false};
+/// What products, quotients and fourth powers of which are finite, also in single precision.
+inline constexpr double kMost = 1e9, kLeast = 1e-9;
+inline constexpr Range kAnyNumber{-kMost, kMost};
+inline constexpr Range kPositive{kLeast, kMost};
+inline constexpr Range kNotNegative{0, kMost};
 
 class MapKeys;
 

@@ -10,7 +10,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "sequences/content/nearest_word.h"
-#include "sequences/content/utf8.h"
+#include "sequences/files/utf8.h"
 #include "sequences/pictures/srgb.h"
 
 namespace talisman::sequences {

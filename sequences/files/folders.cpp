@@ -4,13 +4,17 @@
 #include <filesystem>
 
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/file_text.h"
 #include "sequences/files/temporary_files.h"
 
 namespace talisman::sequences {
 
 void create_folder(const std::string& path) {
+  require_folder_or_nothing(path);
   std::error_code error;
   std::filesystem::create_directories(path, error);
+  if (error == std::errc::not_a_directory)
+    throw InputError("stands below a file, rule: a folder or nothing", path);
   if (error) throw OutputError(path + ": cannot be created: " + error.message());
 }
 

@@ -7,7 +7,8 @@
 
 namespace talisman::sequences {
 
-/// Creates the folder and those above it where they are not there. Throws OutputError.
+/// Creates the folder and those above it where they are not there. Throws InputError where a file is in the way, else
+/// OutputError.
 void create_folder(const std::string& path);
 
 /// The same for a folder to which results are to be written: what a killed writer left there is removed

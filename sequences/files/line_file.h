@@ -5,11 +5,11 @@
 /// and gets its name only when the run is complete; after a killed run the partial file still holds every
 /// line that was finished.
 
-#include <cstdio>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "sequences/files/errors.h"
+#include "sequences/files/output_file.h"
 
 namespace talisman::sequences {
 
@@ -17,17 +17,15 @@ class LineFile {
  public:
   /// Starts NAME.partial with `lines`. Throws OutputError.
   LineFile(std::string path, const std::vector<std::string>& lines = {});
-  ~LineFile();
   LineFile(const LineFile&) = delete;
   LineFile& operator=(const LineFile&) = delete;
 
-  void write(const std::string& line);  ///< with a newline, flushed; throws OutputError
+  void write(const std::string& line);  ///< with a newline, at once; throws OutputError
   void finish();                        ///< syncs and renames to the final name; throws OutputError
 
  private:
-  void fail(const char* what) const;
   std::string path_, partial_;
-  std::FILE* file_ = nullptr;
+  std::optional<OutputFile> file_;  ///< always, but for the constructor
 };
 
 /// Whole lines of NAME.partial, or else of NAME; none if neither exists. A last line without newline (cut by

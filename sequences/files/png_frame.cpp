@@ -3,12 +3,11 @@
 
 #include <spng.h>
 
-#include <fstream>
-#include <iterator>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "sequences/files/errors.h"
+#include "sequences/files/file_text.h"
 
 namespace talisman::sequences {
 namespace {
@@ -30,9 +29,9 @@ int decode(spng_ctx& decoder, const std::vector<char>& bytes, Image8& image) {
 }  // namespace
 
 Image8 read_png_frame(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::vector<char> bytes(std::istreambuf_iterator<char>(in), {});
-  if (!in) throw InputError("cannot be read", path);
+  const std::optional<std::string> found = text_of_file(path);
+  if (!found) throw InputError("cannot be read", path);
+  const std::vector<char> bytes(found->begin(), found->end());
   const std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)> decoder(spng_ctx_new(0), &spng_ctx_free);
   Image8 image;
   const int error = decoder ? decode(*decoder, bytes, image) : static_cast<int>(SPNG_EMEM);

@@ -28,10 +28,17 @@ int count_frames(const fs::path& folder, int first, const std::string& extension
   return count;
 }
 
-std::vector<std::string> encoder_arguments() {
+/// What ffmpeg says that it can encode.
+ChildResult list_of_encoders() {
   const ChildResult list = run_child({"ffmpeg", "-hide_banner", "-encoders"});
   if (!list.started)
     throw OutputError("video: ffmpeg cannot be started (" + list.output + "); install the package ffmpeg");
+  if (!list.succeeded()) throw OutputError("video: ffmpeg failed: " + list.reason());
+  return list;
+}
+
+std::vector<std::string> encoder_arguments() {
+  const ChildResult list = list_of_encoders();
   if (list.output.find(" libx264 ") != std::string::npos)
     return {"-c:v", "libx264", "-preset", "veryfast", "-crf", "18"};
   return {"-c:v", "mpeg4", "-q:v", "2"};
@@ -72,6 +79,8 @@ std::vector<std::string> ffmpeg_arguments(double fps, const VideoInput& input, c
 }
 
 }  // namespace
+
+void require_video_encoder() { list_of_encoders(); }
 
 void write_video(const std::string& dir, double fps, FrameFormat format, int first_frame, int last_frame) {
   const std::string path = (fs::path(dir) / "video.mp4").string();

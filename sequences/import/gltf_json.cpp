@@ -28,6 +28,9 @@ constexpr std::array kReadExtensions = {
     "EXT_meshopt_compression", "KHR_draco_mesh_compression"};
 
 std::vector<std::uint8_t> bytes_of_file(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::exists(path, error) && !std::filesystem::is_regular_file(path, error))
+    throw InputError("is no file");
   std::ifstream in(path, std::ios::binary);
   if (!in) throw InputError("cannot be opened");
   return {std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};

@@ -194,9 +194,11 @@ std::string last_error(const std::string& output) {
 
 /// What went wrong with the child, in words; empty when nothing did.
 std::string failure(const Outcome& outcome, const ImportLimits& limits) {
-  std::string too_slow = "takes longer to read than the limit of " + std::to_string(limits.seconds) + " s";
+  std::string too_slow = "takes longer to read than the limit of " + std::to_string(limits.seconds) +
+                         " s of processor time (--import-limit-s)";
   if (outcome.timed_out) return too_slow;
-  if (outcome.too_long) return "is larger than the limit of " + std::to_string(limits.megabytes) + " MB";
+  if (outcome.too_long)
+    return "is larger than the limit of " + std::to_string(limits.megabytes) + " MB (--import-memory-mb)";
   if (WIFSIGNALED(outcome.status)) {
     const int signal = WTERMSIG(outcome.status);
     if (signal == SIGXCPU || signal == SIGKILL) return too_slow;
@@ -206,6 +208,11 @@ std::string failure(const Outcome& outcome, const ImportLimits& limits) {
   const std::string why = last_error(outcome.errors);
   return why.empty() ? "its reader failed with exit code " + std::to_string(WEXITSTATUS(outcome.status))
                      : why;
+}
+
+ImportLimits& the_limits() {
+  static ImportLimits limits;
+  return limits;
 }
 
 /// Nothing of such a triangle is ever drawn; of a needle of less than 1e-7 of its length there is as little to see.
@@ -235,6 +242,9 @@ void warn_of_no_area(ImportedModel& model) {
 }
 
 }  // namespace
+
+const ImportLimits& import_limits() { return the_limits(); }
+void use_import_limits(const ImportLimits& limits) { the_limits() = limits; }
 
 std::vector<std::string> files_read(const ImportedModel& model) {
   std::vector<std::string> files;

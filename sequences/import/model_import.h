@@ -39,6 +39,11 @@ struct ImportLimits {
   std::int64_t megabytes = 8192;  ///< ≥ 64; address space of the child (not limited in sanitizer builds)
 };
 
+/// The limits of this program, which readers deep inside ask: the defaults until `use_import_limits`, which is called
+/// before anything is read. The options --import-limit-s and --import-memory-mb set them.
+const ImportLimits& import_limits();
+void use_import_limits(const ImportLimits& limits);
+
 /// The author's wish, written into the model file: this node and what is below it belong to that layer.
 struct LayerTag {
   int node = -1;
@@ -63,7 +68,7 @@ std::vector<std::string> files_read(const ImportedModel& model);
 /// loading what the image library depends on) and two copies of the scene; less where the program's cache knows
 /// the model (model_cache.h).
 /// `folders`: in whose trees files that the model names may lie too (texture_search.h).
-ImportedModel import_model(const std::string& path, const ImportLimits& limits = {},
+ImportedModel import_model(const std::string& path, const ImportLimits& limits = import_limits(),
                            const std::vector<std::string>& folders = {});
 
 }  // namespace talisman::sequences

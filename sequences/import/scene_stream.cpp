@@ -6,6 +6,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "sequences/files/utf8.h"
+
 namespace talisman::sequences {
 
 namespace {
@@ -38,10 +40,11 @@ class Writer {
     value(static_cast<std::uint64_t>(v.size()));
     raw(v.data(), v.size() * sizeof(T));
   }
-  void text(const std::string& s) {
+  void path(const std::string& s) {
     value(static_cast<std::uint64_t>(s.size()));
     raw(s.data(), s.size());
   }
+  void text(const std::string& s) { path(s); }
   template <typename T>
   void list(const std::vector<T>& v) {
     value(static_cast<std::uint64_t>(v.size()));
@@ -83,9 +86,15 @@ class Reader {
     v.resize(length(sizeof(T)));
     raw(v.data(), v.size() * sizeof(T));
   }
-  void text(std::string& s) {
+  /// As it is: the file system knows no encoding.
+  void path(std::string& s) {
     s.resize(length(1));
     raw(s.data(), s.size());
+  }
+  /// In UTF-8, whatever the model has: names go into results.
+  void text(std::string& s) {
+    path(s);
+    s = utf8_from(s);
   }
   // Items are made one by one, so that a false length costs no more memory than there are bytes for items.
   template <typename T>
@@ -312,7 +321,7 @@ void fields(Stream& s, T& tag) {
 template <typename Stream, Of<FileUse> T>
 void fields(Stream& s, T& use) {
   s.choice(use.kind, FileUse::Kind::Code);
-  s.text(use.path);
+  s.path(use.path);
   s.value(use.bytes);
   s.value(use.changed_ns);
   s.flag(use.settled);

@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/import/texture_io.h"
 
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
 #include <vector>
 
 #include "sequences/files/picture_codec.h"
@@ -25,6 +32,30 @@ void spread_channels(const std::vector<std::uint8_t>& pixels, int channels, laye
   }
 }
 
+/// Of the address space of this process: how much it may take, and takes; nothing where there is no limit.
+std::optional<std::int64_t> bytes_left() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY) return std::nullopt;
+  std::ifstream in("/proc/self/statm");
+  std::int64_t pages = 0;
+  in >> pages;
+  return static_cast<std::int64_t>(limit.rlim_cur) - pages * ::sysconf(_SC_PAGESIZE);
+}
+
+/// The samples as they are decoded, and four bytes for each texel. Not an InputError: without its texture a model would
+/// be another one, and the limit can be raised.
+void require_room(const PictureInfo& info, const std::string& name) {
+  const std::optional<std::int64_t> left = bytes_left();
+  const std::int64_t needed = std::int64_t{info.width} * info.height * (info.channels + 4);
+  if (left && needed > *left)
+    throw std::runtime_error("texture '" + name + "' of " + std::to_string(info.width) + " × " +
+                             std::to_string(info.height) + " × " + std::to_string(info.channels) + " takes " +
+                             std::to_string((needed >> 20) + 1) +
+                             " MB to decode, and of the memory that its reader may take " +
+                             std::to_string(std::max<std::int64_t>(*left, 0) >> 20) +
+                             " MB are left; --import-memory-mb raises that");
+}
+
 layers::Texture read_opened(OpenedPicture opened, const std::string& name) {
   if (!opened.reader) throw InputError("not an image that can be read: " + opened.error, name);
   const PictureInfo& info = opened.reader->info();
@@ -34,6 +65,7 @@ layers::Texture read_opened(OpenedPicture opened, const std::string& name) {
                          std::to_string(info.channels) + ", rule: sides from 1 to " +
                          std::to_string(kMaxSide),
                      name);
+  require_room(info, name);
   layers::Texture texture;
   texture.name = name;
   texture.width = info.width;

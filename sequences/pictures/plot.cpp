@@ -323,6 +323,14 @@ std::string plot_script(const Plot& plot, const PlotFiles& files) {
   return script + curves + "\n";
 }
 
+void require_plotter() {
+  const ChildResult child = run_child({"gnuplot", "--version"});
+  if (!child.started)
+    throw OutputError("plots: gnuplot cannot be started (" + child.output +
+                      "); install the package gnuplot-nox");
+  if (!child.succeeded()) throw OutputError("plots: gnuplot failed: " + child.reason());
+}
+
 void write_plot(const std::string& dir, const std::string& name, const Plot& plot, const PlotFiles& files) {
   const fs::path base = fs::path(dir) / name;
   const std::string svg = base.string() + ".svg", script = plot_script(plot, files);

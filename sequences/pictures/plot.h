@@ -65,6 +65,9 @@ std::string plot_csv(const Plot& plot);
 /// The gnuplot input; draws SVG to the standard output. No text of the plot can leave its quotes.
 std::string plot_script(const Plot& plot, const PlotFiles& files = {});
 
+/// Is there a gnuplot that answers? To be asked before what is plotted is measured. Throws OutputError.
+void require_plotter();
+
 /// Writes DIR/NAME.csv and DIR/NAME.svg (each whole or not at all). Throws OutputError: not writable, gnuplot
 /// missing or failing.
 void write_plot(const std::string& dir, const std::string& name, const Plot& plot,

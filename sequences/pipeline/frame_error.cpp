@@ -4,6 +4,7 @@
 #include <array>
 
 #include "layers/outline.h"
+#include "warp/fit.h"
 
 namespace talisman::sequences {
 
@@ -44,10 +45,12 @@ double covered_px(const layers::dmat3& screen_from_sprite, layers::ivec2 size_px
 
 FrameError error_of(const FrameReport& report) {
   FrameError error;
+  bool is_bounded = true;
   int in_view = 0;
   for (const regulator::LayerDecision& decision : report.plan.decisions) {
     if (decision.action == regulator::Action::Drop) continue;
     error.mean_px += decision.shown_geometric_px;
+    is_bounded = is_bounded && decision.shown_geometric_px < warp::kHugePx;
     ++in_view;
   }
   if (in_view > 0) error.mean_px /= in_view;
@@ -58,7 +61,7 @@ FrameError error_of(const FrameReport& report) {
     covered += area;
   }
   error.mean_by_pixels_px = covered > 0 ? error.mean_by_pixels_px / covered : 0;
-  return error;
+  return is_bounded ? error : FrameError{warp::kHugePx, warp::kHugePx};
 }
 
 double sprite_depth(const FrameReport& report) {

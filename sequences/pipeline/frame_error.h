@@ -14,6 +14,7 @@
 
 namespace talisman::sequences {
 
+/// Both are warp::kHugePx where a layer is displayed whose error has no bound.
 struct FrameError {
   double mean_px = 0;            ///< 0 where nothing is in view
   double mean_by_pixels_px = 0;  ///< 0 where no sprite covers anything

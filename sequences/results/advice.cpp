@@ -53,8 +53,8 @@ std::string at_another_threshold(const Sequence& sequence, const Settings& setti
     other.regulator.thresholds.geometric_px = times * now_px;
     const int then = renders_of(planned(sequence, other, range), layer->name);
     if (2 * then <= now)
-      return formatted("at %g px %s would be drawn in %d of %zu frames, now in %d", times * now_px,
-                       quoted({layer->name}).c_str(), then, run.frames.size(), now);
+      return formatted("at %g px %s would be drawn in %d of %d frames, now in %d", times * now_px,
+                       quoted({layer->name}).c_str(), then, run.frame_count(), now);
   }
   return {};
 }
@@ -95,7 +95,7 @@ std::string with_lookahead(const Sequence& sequence, const Settings& settings, c
 std::vector<std::string> advice_for(const Sequence& sequence, const Settings& settings,
                                     const FrameRange& range, const Summary& run) {
   const Policy policy = settings.regulator.policy;
-  if ((policy != Policy::Threshold && policy != Policy::Lookahead) || run.frames.empty() ||
+  if ((policy != Policy::Threshold && policy != Policy::Lookahead) || run.frame_count() == 0 ||
       saves_enough(run) || run.layers.size() * static_cast<std::size_t>(range.last + 1) > kMostPlanned)
     return {};
   std::vector<std::string> lines;

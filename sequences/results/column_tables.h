@@ -52,23 +52,11 @@ struct EffectRow {
   int passes = 0;
 };
 
-/// Totals over the frames in which the layers were sorted.
-struct VisibilityTotals {
-  std::int64_t frames = 0, cyclic_frames = 0;
-  std::int64_t queries = 0, pairs = 0, exact_tests = 0, swaps = 0, merged_layers = 0, merged_parts = 0;
-};
-
-/// Means over the frames; PSNR is that of the mean squared error, so that identical frames do not make it
-/// infinite.
-struct MeanQuality {
-  double mse = 0, ssim = 0, flip = 0;
-  double psnr_db() const { return mse > 0 ? 10 * std::log10(255.0 * 255.0 / mse) : INFINITY; }
-};
-
 /// A run with what is added up over its frames once. Keeps a reference.
 struct RunRow {
   explicit RunRow(const Summary& summary);
   const Summary& summary;
+  FrameTotals sums;
   VisibilityTotals visibility;
   ResolvedCounters resolved;
   GapSummary gap;

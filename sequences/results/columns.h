@@ -17,6 +17,8 @@
 #include <variant>
 #include <vector>
 
+#include "warp/fit.h"
+
 namespace talisman::sequences {
 
 /// Not known, and not even asked for: JSON has no entry (Null: an entry that says null).
@@ -26,13 +28,16 @@ struct Absent {
 struct Null {
   bool operator==(const Null&) const = default;
 };
-/// What stands in one column. Numbers that are not finite are Null.
+/// What stands in one column. Numbers that are not finite are Null, and those that only say that there is no bound
+/// (warp::kHugePx): of fiducials the column `fit` says why.
 using Value = std::variant<Absent, Null, bool, std::int64_t, double, std::string>;
 
 inline Value value_of(const Value& value) { return value; }
 inline Value value_of(bool value) { return value; }
 inline Value value_of(std::integral auto value) { return static_cast<std::int64_t>(value); }
-inline Value value_of(double value) { return std::isfinite(value) ? Value(value) : Value(Null{}); }
+inline Value value_of(double value) {
+  return std::fabs(value) < warp::kHugePx ? Value(value) : Value(Null{});  // Null for NaN, too
+}
 inline Value value_of(std::string_view value) { return std::string(value); }
 inline Value value_of(const std::string& value) { return value; }
 inline Value value_of(const char* value) { return std::string(value); }

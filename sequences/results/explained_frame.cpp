@@ -134,7 +134,9 @@ ExplainedFrame explained_frame(const Sequence& sequence, const Settings& setting
 }
 
 ExplainedFrame explained_folder(const std::string& folder, int frame, Json& settings) {
-  settings = finished_run(folder)["settings"];
+  const Json run = finished_run(folder);
+  require_all_decisions(run, folder, "explain");
+  settings = run["settings"];
   DecisionHistory history(frame);
   for (const Json& line : finished_decisions(folder)) history.add(line);
   ExplainedFrame explained;

@@ -26,19 +26,22 @@ struct FiducialRow {
   const char* why_not = nullptr;  ///< one to the reason why it was not computed
   Limit kind = Limit::AtMost;
   Off off = Off::AtZero;
+  bool always = false;  ///< always computed: null says that there is no bound
 };
 
 constexpr FiducialRow kFiducials[] = {
     {"geometric", "/fiducials/warp_geometric_px", "geometric_px", "px", "/fiducials/worst_at_px", nullptr,
-     nullptr, Limit::AtMost, Off::Never},
+     nullptr, Limit::AtMost, Off::Never, true},
     {"photometric", "/fiducials/photometric/color", "photometric", "", "/fiducials/photometric/worst_at_px",
      "/fiducials/photometric/light", "/fiducials/photometric/why_not"},
     {"light angle", "/fiducials/photometric/light_angle_rad", "light_angle_rad", "rad", nullptr,
      "/fiducials/photometric/angle_light", "/fiducials/photometric/why_not"},
-    {"magnification", "/fiducials/magnification", "magnification", ""},
+    {"magnification", "/fiducials/magnification", "magnification", "", nullptr, nullptr, nullptr,
+     Limit::AtMost, Off::AtZero, true},
     {"minification", "/fiducials/minification", "minification", "", nullptr, nullptr, nullptr,
      Limit::AtLeast},
-    {"anisotropy", "/fiducials/anisotropy", "anisotropy", ""},
+    {"anisotropy", "/fiducials/anisotropy", "anisotropy", "", nullptr, nullptr, nullptr, Limit::AtMost,
+     Off::AtZero, true},
     {"uncovered edge", "/fiducials/uncovered_px", "uncovered_px", "px", nullptr, nullptr,
      "/fiducials/uncovered_why_not", Limit::AtMost, Off::BelowZero},
     {"turned side", "/fiducials/turned_px", "turned_px", "px"}};
@@ -83,6 +86,11 @@ FiducialFinding finding_of(const FiducialRow& row, const Json& line, const Json&
   const Json limit = limit_of(row, line, settings);
   if (has_limits(settings) && limit.is_number() && !is_off(row.off, limit.get<double>()))
     finding.limit = limit.dump();
+  if (!value && row.always) {
+    finding.value = "no bound";
+    finding.unit = "";
+    finding.is_beyond = !finding.limit.empty();
+  }
   if (value && !finding.limit.empty()) {
     const double v = value->get<double>(), most = limit.get<double>();
     finding.is_beyond = row.kind == Limit::AtMost ? v > most : v < most;

@@ -3,9 +3,9 @@
 
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 
-#include "sequences/files/errors.h"
+#include "sequences/files/file_text.h"
+#include "sequences/results/json_text.h"
 
 namespace talisman::sequences {
 
@@ -15,8 +15,7 @@ using Json = nlohmann::ordered_json;
 
 /// Discarded where it is no JSON.
 Json parsed_file(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  return Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
+  return Json::parse(text_of_file(path).value_or(""), nullptr, false);
 }
 
 }  // namespace
@@ -29,8 +28,10 @@ bool holds_run(const std::string& folder) {
 Json finished_run(const std::string& folder) {
   Json run = parsed_file(folder + "/run.json");
   std::error_code error;
-  if (std::filesystem::exists(folder + "/decisions.jsonl.partial", error))
-    throw InputError("holds a run that is not complete, the same command with --resume continues it", folder);
+  for (const char* file : {"/decisions.jsonl.partial", "/frames.jsonl.partial"})
+    if (std::filesystem::exists(folder + file, error))
+      throw InputError("holds a run that is not complete, the same command with --resume continues it",
+                       folder);
   if (!run.is_object() || !run.contains("settings") || !run["settings"].is_object())
     throw InputError("holds no run (no run.json of ours), must be the folder of a render or a plan", folder);
   const std::string version =
@@ -38,6 +39,15 @@ Json finished_run(const std::string& folder) {
   if (version != TALISMAN_VERSION)
     throw InputError("holds a run of version " + version + ", must be of " TALISMAN_VERSION, folder);
   return run;
+}
+
+std::string decisions_kept(const Json& run) { return text_in(run, "decisions", "all"); }
+
+void require_all_decisions(const Json& run, const std::string& folder, const std::string& what) {
+  if (const std::string kept = decisions_kept(run); kept != "all")
+    throw InputError(
+        "holds a run with --decisions " + kept + ", and " + what + " needs all, rule: --decisions all",
+        folder);
 }
 
 std::vector<Json> finished_decisions(const std::string& folder) {

@@ -190,6 +190,14 @@ FrameColumns frame_budget_gap() {
               [](auto& l) -> auto& { return l.budget_gap->exact; })};
 }
 
+FrameColumns written_pictures() {
+  return {stored<FrameLine>(
+      "picture_hash", "written/picture_hash", "",
+      "XXH3-128 of the picture's file, hexadecimal; with --separate: of that and of the files of the frame "
+      "there",
+      [](auto& l) -> auto& { return l.picture_hash; })};
+}
+
 FrameColumns frame_predictive() {
   return {stored<FrameLine>(
               "predictive_slice", "predictive/slice", "frame", "first frame of the slice",
@@ -273,6 +281,8 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
       {"visibility", "where layers were sorted; null: the groups alone gave the order", true,
        [](const FrameLine& l) { return l.visibility.has_value(); },
        [](FrameLine& l) { l.visibility.emplace(); }},
+      {"written", "where the picture was written to a file", false,
+       [](const FrameLine& l) { return !l.picture_hash.empty(); }},
       {"light_layers", "where layers hold the light of single lights", false,
        [](const FrameLine& l) { return l.light_beside_px.has_value(); },
        [](FrameLine& l) { l.light_beside_px = 0; }},
@@ -299,8 +309,8 @@ const ColumnTable<FrameLine>& frame_table() {
     for (const FrameColumns& part :
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
-          light_layers(), moving_pictures(), seams(), frame_expressions(), frame_budget_gap(),
-          frame_predictive(),
+          written_pictures(), light_layers(), moving_pictures(), seams(), frame_expressions(),
+          frame_budget_gap(), frame_predictive(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

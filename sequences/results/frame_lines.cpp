@@ -98,6 +98,7 @@ std::string json_of(const FrameLine& line) { return frame_json().write(line).dum
 
 std::optional<FrameLine> frame_line_from_json(const std::string& text) try {
   FrameLine line;
+  line.error = {warp::kHugePx, warp::kHugePx};  // null when read
   frame_json().read(nlohmann::ordered_json::parse(text), line);
   return line;
 } catch (const nlohmann::json::exception&) {

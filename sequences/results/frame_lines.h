@@ -71,7 +71,8 @@ struct FrameTimes {
 /// One frame in numbers: what lines of frames.jsonl and timing.jsonl hold.
 struct FrameLine {
   int frame = 0;
-  std::string frame_hash;  ///< XXH3-128 of the linear picture, hexadecimal; empty when only planned
+  std::string frame_hash;    ///< XXH3-128 of the linear picture, hexadecimal; empty when only planned
+  std::string picture_hash;  ///< of the files that show it (kept_pictures.h); empty: none do
   int layers_in_view = 0, renders = 0, reuses = 0, layers_assessed = 0;
   FrameError error;
   PassCounts passes;

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <map>
 #include <memory>
+#include <span>
 
 #include <nlohmann/json.hpp>
 
@@ -20,7 +21,9 @@
 #include "sequences/pipeline/stopwatch.h"
 #include "sequences/results/audit.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/decision_lines.h"
 #include "sequences/results/exports/sprite_channels.h"
+#include "sequences/results/kept_pictures.h"
 #include "sequences/results/report/changes.h"
 #include "sequences/results/run_folder.h"
 #include "sequences/results/run_identity.h"
@@ -66,19 +69,25 @@ FramePicture encoded_picture(const FrameReport& report, const RunOptions& option
   return picture;
 }
 
+std::optional<ContentHash> hash_of_picture(const FramePicture& picture) {
+  return picture.encoded ? std::optional(hash_of(std::span<const std::uint8_t>(picture.encoded->bytes)))
+                         : std::nullopt;
+}
+
 /// The frames of one run, in order.
 class Runner {
  public:
   Runner(const Sequence& sequence, const Settings& settings, const RunOptions& options)
       : options_(options),
-        lock_(options.out),
+        lock_(checked(options).out),
         pipeline_(make_pipeline(*sequence.scene, sequence.layers, settings)),
         state_(pipeline_) {
     KeptRun kept = begin_run(options, run_json(sequence, settings, options));
     if (options.progress != ProgressKind::None && !kept.news.empty())
       std::fprintf(stderr, "%s\n", kept.news.c_str());
     kept_ = std::move(kept.frames);
-    decisions_ = std::make_unique<LineFile>(options.out + "/decisions.jsonl");
+    if (options.decisions != DecisionLines::None)
+      decisions_ = std::make_unique<LineFile>(options.out + "/decisions.jsonl");
     frames_ = std::make_unique<LineFile>(options.out + "/frames.jsonl", lines_of(kept_));
     timing_ = std::make_unique<LineFile>(options.out + "/timing.jsonl", kept.timing);
     if (options.changes) changes_ = std::make_unique<LineFile>(options.out + "/changes.jsonl");
@@ -103,7 +112,7 @@ class Runner {
     if (changes_) write_changes(report, in_range);
     if (!in_range) return;
     add_decisions(summary_, report, state_);
-    for (const DecisionRow& row : decision_rows(state_, report)) decisions_->write(json_of(row));
+    write_decisions(report);
     if (kept != kept_.end())
       writer_.submit([this, line = kept->second] { add_line(line); });
     else
@@ -113,24 +122,44 @@ class Runner {
   /// Waits until every frame that was drawn is complete. Before that the summary has no frames.
   void complete_frames_at_work() {
     writer_.finish();
-    summary_.frames = lines_;
+    summary_.earlier = sums_;
   }
 
   int frames_complete() const { return complete_; }
 
-  void finish(double fps) {
+  void finish() {
     if (auditor_) summary_.audit = auditor_->finish();
-    decisions_->finish();
+    if (decisions_) decisions_->finish();
     if (changes_) changes_->finish();
     finish_frame_lines();
     timing_->write(total_timing_json(summary_));
     timing_->finish();
-    if (options_.video)
-      write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
     write_text_atomically(options_.out + "/summary.json", json_of(summary_));
   }
 
+  /// Why there is none; empty: there is one.
+  std::string make_video(double fps) const try {
+    write_video(options_.out, fps, options_.format, options_.first_frame, options_.last_frame);
+    return {};
+  } catch (const OutputError& error) {
+    return error.what();
+  }
+
  private:
+  void write_decisions(const FrameReport& report) {
+    if (!decisions_) return;
+    filter_.begin_frame();
+    for (const DecisionRow& row : decision_rows(state_, report))
+      if (filter_.has_line(row)) decisions_->write(json_of(row));
+  }
+
+  /// What cannot succeed ends before the folder is touched.
+  static const RunOptions& checked(const RunOptions& options) {
+    if (options.video) require_video_encoder();
+    require_places(options);
+    return options;
+  }
+
   void write_changes(const FrameReport& report, bool in_range) {
     if (in_range)
       for (const Change& change : changes_in(pipeline_, report, renders_)) changes_->write(json_of(change));
@@ -146,9 +175,11 @@ class Runner {
   /// Frames that were drawn later than others behind them, because their picture was missing, get their place.
   void finish_frame_lines() {
     if (!kept_.empty()) {
+      const std::string path = options_.out + "/frames.jsonl";
       std::map<int, FrameLine> in_order;
-      for (const FrameLine& line : lines_) in_order[line.frame] = line;
-      frames_ = std::make_unique<LineFile>(options_.out + "/frames.jsonl", lines_of(in_order));
+      for (const std::string& text : lines_written(path))
+        if (const auto line = frame_line_from_json(text)) in_order[line->frame] = *line;
+      frames_ = std::make_unique<LineFile>(path, lines_of(in_order));
     }
     frames_->finish();
   }
@@ -162,18 +193,23 @@ class Runner {
       if (!seams_) seams_.emplace(pipeline_);
       open_seam_pixels = seams_->open_in(state_, report, *prepared_);
     }
-    if (prepared_ && options_.separate) write_separate(pipeline_, state_, report, options_.out + "/separate");
+    std::vector<std::string> separate;
+    if (prepared_ && options_.separate)
+      separate = write_separate(pipeline_, state_, report, options_.out + "/separate");
     if (prepared_ && auditor_) auditor_->look(pipeline_, state_, report, *prepared_);
     std::shared_ptr<const SpriteChannels> channels;
     if (prepared_ && options_.format == FrameFormat::ExrLayers)
       channels = std::make_shared<const SpriteChannels>(sprite_channels(pipeline_, state_, report));
     const auto shared = std::make_shared<const FrameReport>(std::move(report));
     if (!prepared_) return writer_.submit([this, shared] { finish_frame(line_of(*shared)); });
-    writer_.submit_prepared([this, shared, quality, open_seam_pixels, channels]() -> FrameWriter::Job {
+    writer_.submit_prepared([this, shared, quality, open_seam_pixels, channels,
+                             separate]() -> FrameWriter::Job {
       FrameLine line = line_of(*shared);
       line.quality = quality;
       line.open_seam_pixels = open_seam_pixels;
       const auto picture = std::make_shared<const FramePicture>(encoded_picture(*shared, options_, channels));
+      if (picture->encoded || !separate.empty())
+        line.picture_hash = picture_hash(options_, hash_of_picture(*picture), separate);
       return [this, line, picture] { finish_frame(line, *picture); };
     });
   }
@@ -188,22 +224,24 @@ class Runner {
   }
 
   void add_line(const FrameLine& line) {
-    lines_.push_back(line);
+    sums_.add(line);
     ++complete_;
   }
 
   const RunOptions& options_;
+  DecisionFilter filter_{options_.decisions};
   FolderLock lock_;
   Pipeline pipeline_;
   PipelineState state_;
   std::optional<SeamCounter> seams_;
   std::map<int, FrameLine> kept_;
-  std::unique_ptr<LineFile> decisions_, frames_, timing_, changes_;  ///< the last only where it is asked for
-  LastRenders renders_;                                              ///< likewise
+  std::unique_ptr<LineFile> decisions_, frames_, timing_,
+      changes_;          ///< the first and the last only where asked for
+  LastRenders renders_;  ///< likewise
   std::unique_ptr<chunker::PreparedScene> prepared_;
   std::optional<Auditor> auditor_;
   Summary summary_;
-  std::vector<FrameLine> lines_;   ///< the writer's alone until it has finished
+  FrameTotals sums_;               ///< of the frames complete; the writer's alone until it has finished
   std::atomic<int> complete_ = 0;  ///< how many those are
   FrameWriter writer_;             ///< last: its jobs use all the others
 };
@@ -223,6 +261,8 @@ RunOutcome run(const Sequence& sequence, const Settings& settings, const RunOpti
       if (frame >= options.first_frame && !runner.was_kept(frame)) progress.advance();
     }
     runner.complete_frames_at_work();
+    outcome.complete = !stop;
+    if (outcome.complete) runner.finish();
   } catch (const OutputError& error) {
     const int complete = runner.frames_complete();
     if (complete == 0 || options.plan_only) throw;
@@ -230,8 +270,7 @@ RunOutcome run(const Sequence& sequence, const Settings& settings, const RunOpti
                         (complete == 1 ? " frame is" : " frames are") +
                         " complete, the same command with --resume continues");
   }
-  outcome.complete = !stop;
-  if (outcome.complete) runner.finish(settings.fps);
+  if (outcome.complete && options.video) outcome.without_video = runner.make_video(settings.fps);
   outcome.summary = std::move(runner.summary());
   return outcome;
 }

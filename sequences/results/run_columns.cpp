@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <algorithm>
-
 #include "regulator/profile.h"
 #include "sequences/results/column_tables.h"
 #include "sequences/results/shared_columns.h"
@@ -10,39 +8,6 @@ namespace talisman::sequences {
 namespace {
 
 using RunColumns = std::vector<Column<RunRow>>;
-
-std::optional<MeanQuality> mean_quality(const Summary& summary, Quality FrameQuality::*which) {
-  MeanQuality mean;
-  int frames = 0;
-  for (const FrameLine& line : summary.frames) {
-    if (!line.quality) continue;
-    const Quality& q = (*line.quality).*which;
-    mean.mse += std::isfinite(q.psnr_db) ? 255.0 * 255.0 / std::pow(10.0, q.psnr_db / 10) : 0;
-    mean.ssim += q.ssim;
-    mean.flip += q.flip;
-    ++frames;
-  }
-  if (frames == 0) return std::nullopt;
-  for (double* value : {&mean.mse, &mean.ssim, &mean.flip}) *value /= frames;
-  return mean;
-}
-
-VisibilityTotals visibility_totals(const Summary& summary) {
-  VisibilityTotals sum;
-  for (const FrameLine& line : summary.frames) {
-    if (!line.visibility) continue;
-    const layers::VisibilityCounters& c = line.visibility->counters;
-    ++sum.frames;
-    sum.cyclic_frames += c.merged_components + line.visibility->resolved.components > 0;
-    sum.queries += c.queries;
-    sum.pairs += c.pairs;
-    sum.exact_tests += c.exact_tests;
-    sum.swaps += c.swaps;
-    sum.merged_layers += c.merged_layers;
-    sum.merged_parts += line.visibility->merged_parts;
-  }
-  return sum;
-}
 
 template <typename Get>
 Column<RunRow> of_run(std::string name, std::string unit, std::string meaning, Get get) {
@@ -66,20 +31,19 @@ Column<RunRow> place(const char* path) {
 }
 
 RunColumns what_was_run() {
-  return {
-      of_run("sequence", "", "name of the sequence", [](const RunRow& r) { return r.summary.sequence; }),
-      of_run("policy", "", "of the regulator", [](const RunRow& r) { return r.summary.policy; }),
-      of_run("warp", "", "curve of the warps", [](const RunRow& r) { return r.summary.warp; }),
-      of_run("compositor", "", "talisman (over only) or extended",
-             [](const RunRow& r) { return r.summary.compositor; }),
-      of_run("frames", "frames", "of this run", [](const RunRow& r) { return r.summary.frames.size(); }),
-      of_run("first_frame", "", "number of the first of them",
-             [](const RunRow& r) { return r.summary.frames.empty() ? 0 : r.summary.frames.front().frame; }),
-      computed<RunRow>("display_width_px", "display_px/0", "px", "of the display",
-                       [](const RunRow& r) { return r.summary.display_px.x; }),
-      computed<RunRow>("display_height_px", "display_px/1", "px", "of the display",
-                       [](const RunRow& r) { return r.summary.display_px.y; }),
-      place("layers")};
+  return {of_run("sequence", "", "name of the sequence", [](const RunRow& r) { return r.summary.sequence; }),
+          of_run("policy", "", "of the regulator", [](const RunRow& r) { return r.summary.policy; }),
+          of_run("warp", "", "curve of the warps", [](const RunRow& r) { return r.summary.warp; }),
+          of_run("compositor", "", "talisman (over only) or extended",
+                 [](const RunRow& r) { return r.summary.compositor; }),
+          of_run("frames", "frames", "of this run", [](const RunRow& r) { return r.summary.frame_count(); }),
+          of_run("first_frame", "", "number of the first of them",
+                 [](const RunRow& r) { return r.sums.first_frame(); }),
+          computed<RunRow>("display_width_px", "display_px/0", "px", "of the display",
+                           [](const RunRow& r) { return r.summary.display_px.x; }),
+          computed<RunRow>("display_height_px", "display_px/1", "px", "of the display",
+                           [](const RunRow& r) { return r.summary.display_px.y; }),
+          place("layers")};
 }
 
 std::int64_t total_of(const RunRow& row, std::int64_t (*number)(const FrameLine&)) {
@@ -169,12 +133,12 @@ RunColumns run_visibility() {
 RunColumns modelled() {
   return {run_measured("modelled_ms", "ms", "modelled time of a frame, mean over the frames",
                        [](const RunRow& r) {
-                         const double frames = static_cast<double>(r.summary.frames.size());
+                         const double frames = r.summary.frame_count();
                          return frames > 0 ? r.summary.total(&FrameLine::modelled_ms) / frames : 0;
                        }),
           of_run("modelled_drawing_ms", "ms", "of it the renderer's part, as planned, mean over the frames",
                  [](const RunRow& r) {
-                   const double frames = static_cast<double>(r.summary.frames.size());
+                   const double frames = r.summary.frame_count();
                    return frames > 0 ? r.summary.total(&FrameLine::modelled_drawing_ms) / frames : 0;
                  }),
           of_run("modelled_profile", "", "on this hardware",
@@ -230,16 +194,12 @@ std::vector<ColumnGroup<RunRow>> run_groups() {
 }  // namespace
 
 RunRow::RunRow(const Summary& s)
-    : summary(s), visibility(visibility_totals(s)), resolved(s.resolved()), gap(s.budget_gap()) {
-  if (s.compression_quality && !s.planned_only) {
-    compression.emplace();
-    for (const FrameLine& line : s.frames)
-      if (line.compression) *compression += *line.compression;
-  }
-  if (s.frames.empty() || !s.frames.front().quality) return;
-  quality = mean_quality(s, &FrameQuality::total);
-  quality_of_reuse = mean_quality(s, &FrameQuality::reuse);
-  quality_of_resampling = mean_quality(s, &FrameQuality::resampling);
+    : summary(s), sums(s.sums()), visibility(sums.visibility()), resolved(sums.resolved()), gap(sums.gap()) {
+  if (s.compression_quality && !s.planned_only)
+    compression = sums.compression().value_or(CompressionReport{});
+  quality = sums.quality(&FrameQuality::total);
+  quality_of_reuse = sums.quality(&FrameQuality::reuse);
+  quality_of_resampling = sums.quality(&FrameQuality::resampling);
 }
 
 const ColumnTable<RunRow>& run_table() {

@@ -163,6 +163,8 @@ Json json_or_null(const std::optional<double>& value) { return value ? Json(*val
 
 RunDifference run_difference(const std::string& folder_a, const std::string& folder_b) {
   const Json run_a = finished_run(folder_a), run_b = finished_run(folder_b);
+  require_all_decisions(run_a, folder_a, "a difference of runs");
+  require_all_decisions(run_b, folder_b, "a difference of runs");
   const Json summary_a = finished_summary(folder_a), summary_b = finished_summary(folder_b);
   const Decisions a = by_frame_and_layer(finished_decisions(folder_a)),
                   b = by_frame_and_layer(finished_decisions(folder_b));

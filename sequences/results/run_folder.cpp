@@ -3,16 +3,17 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/files/atomic_file.h"
+#include "sequences/files/file_text.h"
 #include "sequences/files/folders.h"
 #include "sequences/files/line_file.h"
 #include "sequences/files/temporary_files.h"
+#include "sequences/results/json_text.h"
+#include "sequences/results/kept_pictures.h"
 #include "sequences/results/run_identity.h"
 #include "sequences/results/timing.h"
 
@@ -38,19 +39,30 @@ const char* extension_of(FrameFormat format) {
 
 /// run.json of an earlier run; null if there is none. Throws InputError if it is nothing of ours.
 Json earlier_run(const RunOptions& options) {
-  const std::string file = options.out + "/run.json";
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return nullptr;
-  Json run = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
+  const std::optional<std::string> text = text_of_file(options.out + "/run.json");
+  if (!text) return nullptr;
+  Json run = Json::parse(*text, nullptr, false);
   return run.is_object() ? run : Json("damaged");
 }
 
-bool is_plan(const Json& run) { return run.is_object() && run.value("kind", "") == "plan"; }
+/// Is it called like a picture of ours?
+bool is_numbered(const fs::path& file) {
+  const std::string stem = file.stem().string(), extension = file.extension().string();
+  const bool numbered = !stem.empty() && stem.find_first_not_of("0123456789") == std::string::npos;
+  return numbered && (extension == ".png" || extension == ".exr");
+}
+
+/// Of a run that wrote pictures of its frames.
+bool has_pictures(const Json& run) {
+  return run.is_object() && text_in(run, "kind") == "render" && text_in(run, "format", "none") != "none";
+}
+
+bool is_plan(const Json& run) { return run.is_object() && text_in(run, "kind") == "plan"; }
 
 /// Is there anything in the folder, and nothing that says it is a run's? What a killed run left before it could say
 /// so does not count.
 bool holds_others_files(const std::string& out, const Json& earlier) {
-  if (earlier.is_object() && earlier.value("schema", "").rfind("talisman.run/", 0) == 0) return false;
+  if (earlier.is_object() && text_in(earlier, "schema").rfind("talisman.run/", 0) == 0) return false;
   const std::set<std::string> ours = {".lock", "frames", "separate"};
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(out, error)) {
@@ -62,13 +74,17 @@ bool holds_others_files(const std::string& out, const Json& earlier) {
   return false;
 }
 
-/// Frames that an earlier run completed: their line and their picture are there.
+/// Frames that an earlier run completed: their line is there, and their picture as it was written.
 KeptRun complete_frames(const RunOptions& options) {
   KeptRun kept;
+  SeparateNames separate = separate_names(options);
   for (const std::string& text : lines_written(options.out + "/frames.jsonl")) {
     const std::optional<FrameLine> line = frame_line_from_json(text);
     if (!line || !line->is_drawn()) continue;
-    if (options.format == FrameFormat::None || fs::exists(frame_path(options, line->frame)))
+    const bool has_picture = options.format != FrameFormat::None;
+    const auto picture = has_picture ? hash_of_file(frame_path(options, line->frame)) : std::nullopt;
+    if (has_picture == picture.has_value() &&
+        picture_hash(options, picture, separate[line->frame]) == line->picture_hash)
       kept.frames[line->frame] = *line;
   }
   for (const std::string& text : lines_written(options.out + "/timing.jsonl")) {
@@ -89,11 +105,8 @@ void remove_old_results(const RunOptions& options, bool pictures_are_ours) {
     fs::remove(options.out + "/" + name);
   if (options.plan_only || !pictures_are_ours) return;
   fs::remove(options.out + "/video.mp4");
-  for (const fs::directory_entry& entry : fs::directory_iterator(options.out + "/frames")) {
-    const std::string stem = entry.path().stem().string(), extension = entry.path().extension().string();
-    const bool numbered = !stem.empty() && stem.find_first_not_of("0123456789") == std::string::npos;
-    if (numbered && (extension == ".png" || extension == ".exr")) fs::remove(entry.path());
-  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(options.out + "/frames"))
+    if (is_numbered(entry.path())) fs::remove(entry.path());
 }
 
 /// How many frames an earlier run finished, whether it came to its end or not.
@@ -120,6 +133,19 @@ std::string frame_path(const RunOptions& options, int frame) {
   return options.out + "/frames/" + name;
 }
 
+void require_places(const RunOptions& options) {
+  require_folder_or_nothing(options.out);
+  const std::string in = options.out + "/";
+  for (const char* folder : {"frames", "separate", "audit"}) require_folder_or_nothing(in + folder);
+  for (const char* file : {"run.json", "summary.json", "what-if.json", "report.html", "video.mp4", ".lock"})
+    require_file_or_nothing(in + file);
+  for (const char* file : {"decisions.jsonl", "frames.jsonl", "timing.jsonl", "changes.jsonl"})
+    for (const char* state : {"", ".partial", ".partial.new"}) require_file_or_nothing(in + file + state);
+  std::error_code error;
+  for (fs::directory_iterator it(in + "frames", error), end; !error && it != end; it.increment(error))
+    if (is_numbered(it->path())) require_file_or_nothing(it->path().string());
+}
+
 KeptRun begin_run(const RunOptions& options, const Json& run) {
   const std::string run_file = options.out + "/run.json";
   const Json earlier = earlier_run(options);
@@ -127,6 +153,10 @@ KeptRun begin_run(const RunOptions& options, const Json& run) {
   if (options.plan_only && is_render)
     throw InputError("says that the folder holds pictures, a plan must go into a folder of its own",
                      run_file);
+  if (!options.force && options.format == FrameFormat::None && has_pictures(earlier))
+    throw InputError(
+        "says that the folder holds pictures, and this run draws none; rule: another folder, or --force",
+        run_file);
   if (!options.force && holds_others_files(options.out, earlier))
     throw InputError("holds files that are not of a run, rule: an empty folder, one of a run, or --force",
                      options.out);

@@ -25,7 +25,11 @@ namespace talisman::sequences {
 
 std::string frame_path(const RunOptions& options, int frame);
 
-/// What an earlier run completed, and this one need not do again.
+/// Throws InputError if something else stands where a folder or a file of the run belongs. Touches nothing.
+void require_places(const RunOptions& options);
+
+/// What an earlier run completed, and this one need not do again: frames whose line is there, and whose picture still has
+/// the hash that it says (kept_pictures.h).
 struct KeptRun {
   std::map<int, FrameLine> frames;  ///< with their times
   std::vector<std::string> timing;  ///< lines of timing.jsonl: of those frames and of the processes
@@ -33,8 +37,9 @@ struct KeptRun {
 };
 
 /// Makes the folders, removes what killed runs left half written, and (unless `resume` asks to go on with what is
-/// complete) all results of an earlier run. A folder that holds other files is refused unless `force`. `run` is what run.json is to say; it is written. Throws InputError when
-/// the run to be resumed is another one, OutputError when a folder or file cannot be written.
+/// complete) all results of an earlier run. A folder that holds other files, or pictures where this run draws none, is
+/// refused unless `force`. `run` is what run.json is to say; it is written. Throws InputError when the run to be resumed
+/// is another one, OutputError when a folder or file cannot be written.
 KeptRun begin_run(const RunOptions& options, const nlohmann::ordered_json& run);
 
 }  // namespace talisman::sequences

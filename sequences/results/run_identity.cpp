@@ -8,6 +8,8 @@
 
 #include "sequences/content/asset_paths.h"
 #include "sequences/files/content_hash.h"
+#include "sequences/files/utf8.h"
+#include "sequences/results/decision_lines.h"
 #include "sequences/results/settings_json.h"
 
 namespace talisman::sequences {
@@ -39,7 +41,13 @@ Json content_json(const Sequence& sequence) {
       if (!content) throw InputError("cannot be read", file);
       hash = content->hex();
     }
-  return hashes;
+  std::map<std::string, std::string> named;
+  for (const auto& [file, hash] : hashes) {
+    std::string name = utf8_from(file);
+    while (named.contains(name)) name += "'";  // two names that are one in UTF-8
+    named[name] = hash;
+  }
+  return named;
 }
 
 std::string was(const Json* value) { return value ? value->dump() : "absent"; }
@@ -111,6 +119,7 @@ Json run_json(const Sequence& sequence, const Settings& settings, const RunOptio
               {"separate", o.separate},      {"quality", o.quality},
               {"settings", of_settings},     {"content", content}};
   if (!asked.empty()) run["options"] = asked;
+  if (o.decisions != DecisionLines::All) run["decisions"] = word_of(o.decisions);
   return run;
 }
 

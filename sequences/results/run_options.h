@@ -10,6 +10,10 @@
 
 namespace talisman::sequences {
 
+/// Which lines decisions.jsonl has: of every layer in every frame; of those that are drawn or whose decision is another
+/// one than in the frame before; none, and no file.
+enum class DecisionLines { All, Changed, None };
+
 struct RunOptions {
   std::string out;                      ///< result folder, made if missing
   int first_frame = 0, last_frame = 0;  ///< inclusive
@@ -18,6 +22,7 @@ struct RunOptions {
   bool separate = false;   ///< also each shade sprite alone, and the sums, in DIR/separate
   int audit_every = 0;     ///< every so many reuses of a layer are drawn fresh and compared; 0: none
   bool video = false, overlay = false, quality = false, resume = false;
+  DecisionLines decisions = DecisionLines::All;
   bool force = false;    ///< also into a folder that holds other files
   bool changes = false;  ///< also changes.jsonl (report/changes.h)
   ProgressKind progress = ProgressKind::Auto;

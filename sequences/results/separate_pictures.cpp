@@ -31,9 +31,13 @@ void write(const Pipeline& pipeline, const std::vector<chunker::PlacedSprite>& s
 
 }  // namespace
 
-void write_separate(const Pipeline& pipeline, const PipelineState& state, const FrameReport& report,
-                    const std::string& folder) {
+std::vector<std::string> write_separate(const Pipeline& pipeline, const PipelineState& state,
+                                        const FrameReport& report, const std::string& folder) {
   const LayerTable& all = report.layers;
+  std::vector<std::string> names;
+  const auto name_of = [&](const std::string& layer) {
+    return folder + "/" + names.emplace_back(picture_of(report.frame, layer));
+  };
   const BlendedSprites blended = blended_sprites(state, report);
   const auto base_of = [&](const ShownSprite& s) {
     return all[s.layer].base < 0 ? s.layer : all[s.layer].base;
@@ -47,12 +51,11 @@ void write_separate(const Pipeline& pipeline, const PipelineState& state, const 
     if (sum.size() < 2) continue;
     for (std::size_t k = first; k < i; ++k) {
       const layers::Layer& layer = all[report.shown[k].layer];
-      write(pipeline, {sum[k - first]}, behind(pipeline, layer.kind),
-            folder + "/" + picture_of(report.frame, layer.name));
+      write(pipeline, {sum[k - first]}, behind(pipeline, layer.kind), name_of(layer.name));
     }
-    write(pipeline, sum, pipeline.scene.background,
-          folder + "/" + picture_of(report.frame, all[base].name + "-sum"));
+    write(pipeline, sum, pipeline.scene.background, name_of(all[base].name + "-sum"));
   }
+  return names;
 }
 
 }  // namespace talisman::sequences

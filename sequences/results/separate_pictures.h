@@ -9,14 +9,15 @@
 ///   NNNN-floor-sum.png              base and shades, composited in their order over the background
 
 #include <string>
+#include <vector>
 
 #include "sequences/pipeline/frame_report.h"
 #include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 
-/// Writes them for every base with shade layers that is shown in `report`, into `folder` (which exists).
-void write_separate(const Pipeline& pipeline, const PipelineState& state, const FrameReport& report,
-                    const std::string& folder);
+/// Writes them for every base with shade layers that is shown in `report`, into `folder` (which exists). Their names.
+std::vector<std::string> write_separate(const Pipeline& pipeline, const PipelineState& state,
+                                        const FrameReport& report, const std::string& folder);
 
 }  // namespace talisman::sequences

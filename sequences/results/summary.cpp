@@ -40,7 +40,7 @@ Json layers_json(const Summary& s) {
   static const RowJson<LayerRow> writer(layer_table());
   Json json = Json::array();
   for (const LayerSummary* row : s.rows())
-    json.push_back(writer.write({*row, static_cast<int>(s.frames.size()), s.share_of_cost(*row)}));
+    json.push_back(writer.write({*row, s.frame_count(), s.share_of_cost(*row)}));
   return json;
 }
 
@@ -186,7 +186,7 @@ double Summary::mean_update_rate() const {
   int count = 0;
   for (const LayerSummary& layer : layers) {
     if (layer.is_aggregate) continue;
-    sum += layer.drawn_rate(static_cast<int>(frames.size()));
+    sum += layer.drawn_rate(frame_count());
     ++count;
   }
   return count > 0 ? sum / count : 0;
@@ -196,24 +196,16 @@ double Summary::cost_weighted_update_rate() const {
   double weighted = 0, weight = 0;
   for (const LayerSummary& layer : layers) {
     if (layer.is_aggregate) continue;
-    weighted += layer.polygons * layer.drawn_rate(static_cast<int>(frames.size()));
+    weighted += layer.polygons * layer.drawn_rate(frame_count());
     weight += layer.polygons;
   }
   return weight > 0 ? weighted / weight : 0;
 }
 
-GapSummary Summary::budget_gap() const {
-  GapSummary gap;
-  for (const FrameLine& line : frames) {
-    if (!line.budget_gap) continue;
-    ++gap.frames;
-    if (!line.budget_gap->exact) continue;  // nothing is known of it
-    ++gap.exact_frames;
-    gap.mean += line.budget_gap->gap();
-    gap.max = std::max(gap.max, line.budget_gap->gap());
-  }
-  if (gap.exact_frames > 0) gap.mean /= gap.exact_frames;
-  return gap;
+FrameTotals Summary::sums() const {
+  FrameTotals sums = earlier;
+  for (const FrameLine& line : frames) sums.add(line);
+  return sums;
 }
 
 std::int64_t Summary::polygons_rendered() const {
@@ -229,22 +221,8 @@ double Summary::plan_ms() const {
 }
 
 double Summary::planning_us_per_layer_and_frame() const {
-  const double layer_frames = static_cast<double>(layers.size() * frames.size());
+  const double layer_frames = static_cast<double>(layers.size()) * frame_count();
   return layer_frames > 0 ? 1e3 * plan_ms() / layer_frames : 0;
-}
-
-ResolvedCounters Summary::resolved() const {
-  ResolvedCounters sum;
-  for (const FrameLine& line : frames) {
-    if (!line.visibility) continue;
-    const ResolvedCounters& r = line.visibility->resolved;
-    sum.components += r.components;
-    sum.layers += r.layers;
-    sum.reads += r.reads;
-    sum.operators += r.operators;
-    sum.registers = std::max(sum.registers, r.registers);
-  }
-  return sum;
 }
 
 std::string json_of(const Summary& s) {

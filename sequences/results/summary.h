@@ -13,6 +13,7 @@
 #include "sequences/pipeline/pipeline.h"
 #include "sequences/results/audit.h"
 #include "sequences/results/frame_lines.h"
+#include "sequences/results/frame_totals.h"
 #include "sequences/results/reason_tally.h"
 
 namespace talisman::sequences {
@@ -40,16 +41,12 @@ struct LayerSummary {
   double drawn_rate(int frames) const {
     return frames > 0 ? static_cast<double>(renders + merged_renders) / frames : 0;
   }
-  double mean_geometric_px() const { return frames_shown > 0 ? sum_geometric_px / frames_shown : 0; }
+  /// Without a bound (warp::kHugePx) where one of them has none.
+  double mean_geometric_px() const {
+    if (max_geometric_px >= warp::kHugePx) return warp::kHugePx;
+    return frames_shown > 0 ? sum_geometric_px / frames_shown : 0;
+  }
   double mean_resolution() const { return frames_shown > 0 ? sum_resolution / frames_shown : 1; }
-};
-
-/// How far the greedy choice was from the best one. Mean and largest gap are those of the frames in which the
-/// best one was proved.
-struct GapSummary {
-  int frames = 0;
-  int exact_frames = 0;  ///< of them, the best choice was proved
-  double mean = 0, max = 0;
 };
 
 /// The whole run.
@@ -65,7 +62,8 @@ struct Summary {
   std::vector<layers::EffectCall> effects;
   /// One per entry of `effects`: renders of layers that use it; for shadow maps the maps drawn.
   std::vector<int> effect_passes;
-  std::vector<FrameLine> frames;
+  FrameTotals earlier;            ///< of frames whose lines are not held
+  std::vector<FrameLine> frames;  ///< behind them, those whose lines are
   std::vector<LayerAudit> audit;  ///< with --audit: the layers that were reused
 
   /// Of the layers, the shadow maps and the mirrors, as tables have them.
@@ -75,18 +73,19 @@ struct Summary {
   /// Over the author's layers; a render of an aggregate counts for each of its members.
   double mean_update_rate() const;
   double cost_weighted_update_rate() const;  ///< weighted by polygons
-  /// `number` of a frame (a member, or a function of a FrameLine), added up.
+  int frame_count() const { return static_cast<int>(earlier.frames()) + static_cast<int>(frames.size()); }
+  /// Of all frames.
+  FrameTotals sums() const;
+  /// `number` of a frame (a member that FrameTotals::total has, or a function of such), added up.
   template <typename Number>
   auto total(const Number& number) const {
-    std::decay_t<std::invoke_result_t<Number, const FrameLine&>> sum = 0;
+    std::decay_t<std::invoke_result_t<Number, const FrameLine&>> sum = std::invoke(number, earlier.total());
     for (const FrameLine& line : frames) sum += std::invoke(number, line);
     return sum;
   }
   std::int64_t polygons_rendered() const;
   std::int64_t pixels_rendered() const;
   double plan_ms() const;
-  GapSummary budget_gap() const;
-  ResolvedCounters resolved() const;               ///< added up over the frames; registers: at most
   double planning_us_per_layer_and_frame() const;  ///< plan time over layers × frames
 };
 

@@ -30,7 +30,7 @@ std::string why_drawn(const LayerSummary& row) {
 }
 
 std::string layer_rows(const Summary& s) {
-  const int frames = static_cast<int>(s.frames.size());
+  const int frames = s.frame_count();
   std::string text = formatted("  %-24s %9s %8s %8s %7s %9s %9s %11s  %s\n", "layer", "polygons", "renders",
                                "rate", "cost", "mean px", "max px", "sprite px", "why drawn");
   for (const LayerSummary* row : s.rows()) {
@@ -62,35 +62,22 @@ std::string quality_rows(const RunRow& run) {
 }
 
 /// Empty where no layers share edges.
-std::string seam_row(const Summary& s) {
-  std::int64_t open = 0, most = 0;
-  int worst = -1;
-  bool counted = false;
-  for (const FrameLine& line : s.frames) {
-    if (!line.open_seam_pixels) continue;
-    counted = true;
-    open += *line.open_seam_pixels;
-    if (*line.open_seam_pixels > most) most = *line.open_seam_pixels, worst = line.frame;
-  }
-  if (!counted) return {};
+std::string seam_row(const RunRow& run) {
+  if (!run.sums.open_seams()) return {};
+  const FrameTotals::OpenSeams& open = *run.sums.open_seams();
   const std::string all =
-      formatted("  %-30s %lld pixels", "open at shared edges", static_cast<long long>(open));
-  return worst < 0
-             ? all + "\n"
-             : all + formatted(", at most %lld in one frame, %d\n", static_cast<long long>(most), worst);
+      formatted("  %-30s %lld pixels", "open at shared edges", static_cast<long long>(open.pixels));
+  return open.worst_frame < 0 ? all + "\n"
+                              : all + formatted(", at most %lld in one frame, %d\n",
+                                                static_cast<long long>(open.most), open.worst_frame);
 }
 
 /// Empty where nothing moves in pictures.
-std::string upload_row(const Summary& s) {
-  std::int64_t bytes = 0;
-  bool counted = false;
-  for (const FrameLine& line : s.frames) {
-    counted = counted || line.upload_bytes.has_value();
-    bytes += line.upload_bytes.value_or(0);
-  }
-  return counted ? formatted("  %-17s %s bytes of new frames of pictures\n", "uploaded",
-                             magnitude(static_cast<double>(bytes)).c_str())
-                 : "";
+std::string upload_row(const RunRow& run) {
+  const std::optional<std::int64_t>& bytes = run.sums.upload_bytes();
+  return bytes ? formatted("  %-17s %s bytes of new frames of pictures\n", "uploaded",
+                           magnitude(static_cast<double>(*bytes)).c_str())
+               : "";
 }
 
 std::string share_row(const char* label, std::int64_t part, std::int64_t whole, const char* of) {
@@ -123,7 +110,7 @@ std::string work_rows(const Summary& s) {
                     s.total([](const FrameLine& line) { return line.polygons.reference; }), "");
   text += share_row("pixels", s.pixels_rendered(),
                     s.total([](const FrameLine& line) { return line.pixels.reference; }), "");
-  const double frames = std::max(1.0, static_cast<double>(s.frames.size()));
+  const double frames = std::max(1, s.frame_count());
   if (s.planned_only)
     return text + formatted("  modelled          %.2f ms of rendering a frame on talisman-1996, as planned\n",
                             s.total(&FrameLine::modelled_drawing_ms) / frames);
@@ -134,8 +121,8 @@ std::string work_rows(const Summary& s) {
 /// What the budget put off, and what it could never pay.
 std::string deferred_rows(const Summary& s) {
   if (s.frames_deferred == 0) return {};
-  std::string text = formatted("  put off           something in %d of %zu frames, for want of budget\n",
-                               s.frames_deferred, s.frames.size());
+  std::string text = formatted("  put off           something in %d of %d frames, for want of budget\n",
+                               s.frames_deferred, s.frame_count());
   for (const auto* rows : {&s.layers, &s.shadow_maps})
     for (const LayerSummary& row : *rows)
       if (row.frames_over_budget > 0)
@@ -183,14 +170,14 @@ std::string time_row(const Summary& s) {
 
 std::string table_of(const Summary& s) {
   const RunRow run(s);
-  std::string text = formatted("%s: %zu %s of %dx%d px, policy %s, warp %s\n\n", s.sequence.c_str(),
-                               s.frames.size(), s.frames.size() == 1 ? "frame" : "frames", s.display_px.x,
+  std::string text = formatted("%s: %d %s of %dx%d px, policy %s, warp %s\n\n", s.sequence.c_str(),
+                               s.frame_count(), s.frame_count() == 1 ? "frame" : "frames", s.display_px.x,
                                s.display_px.y, s.policy.c_str(), s.warp.c_str());
-  text += layer_rows(s) + "\n" + work_rows(s) + special_rows(run) + upload_row(s);
+  text += layer_rows(s) + "\n" + work_rows(s) + special_rows(run) + upload_row(run);
   text += formatted("  planning          %.2f us per layer and frame\n", s.planning_us_per_layer_and_frame());
   if (run.compression) text += compression_row(run);
   text += time_row(s);
-  if (run.quality) text += "\n" + quality_rows(run) + seam_row(s);
+  if (run.quality) text += "\n" + quality_rows(run) + seam_row(run);
   if (!s.audit.empty()) text += "\n" + table_of(s.audit);
   return text;
 }

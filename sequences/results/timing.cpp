@@ -10,8 +10,10 @@
 
 #include <oneapi/tbb/global_control.h>
 
+#include "sequences/files/utf8.h"
 #include "sequences/results/column_json.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/json_text.h"
 
 namespace talisman::sequences {
 
@@ -112,7 +114,7 @@ std::string process_json() {
   return Json{{"schema", kProcess},
               {"version", TALISMAN_VERSION},
               {"started", utc_now()},
-              {"machine", system.nodename},
+              {"machine", utf8_from(system.nodename)},
               {"system", std::string(system.sysname) + " " + system.release + " " + system.machine},
               {"processor", processor()},
               {"threads", threads}}
@@ -121,7 +123,7 @@ std::string process_json() {
 
 bool is_process_line(const std::string& text) {
   const Json json = Json::parse(text, nullptr, false);
-  return json.is_object() && json.value("schema", "") == kProcess;
+  return json.is_object() && text_in(json, "schema") == kProcess;
 }
 
 std::string total_timing_json(const Summary& s) {
@@ -129,12 +131,10 @@ std::string total_timing_json(const Summary& s) {
     return s.total([time](const FrameLine& line) { return line.times.*time; });
   };
   const auto measured = [&s](double value) { return s.planned_only ? Json(nullptr) : Json(value); };
-  double slowest_sort_ms = 0;
-  for (const FrameLine& line : s.frames) slowest_sort_ms = std::max(slowest_sort_ms, line.times.sort_ms);
   return Json{{"schema", "talisman.timing_total/1"},
-              {"frames", s.frames.size()},
+              {"frames", s.frame_count()},
               {"planning_us_per_layer_and_frame", s.planning_us_per_layer_and_frame()},
-              {"slowest_sort_ms", slowest_sort_ms},
+              {"slowest_sort_ms", s.sums().slowest_sort_ms()},
               {"wall_ms",
                {{"plan", total(&FrameTimes::plan_ms)},
                 {"sort", total(&FrameTimes::sort_ms)},

@@ -57,7 +57,7 @@ void add_sources(Table<ImageRecipe>& table) {
       .custom("video", with_rule(text().type, "a file that is there, no playlist and no URL"), read_video_key,
               "", "a video: what ffmpeg reads; times, colours and rotation are those that it states")
       .exactly_one_of({"file", "files", "video"})
-      .key("fps", &ImageRecipe::fps, number({0, 1000, true}), "frames/s", "of the pictures")
+      .key("fps", &ImageRecipe::fps, number({kLeast, 1000}), "frames/s", "of the pictures")
       .otherwise("that of the sequence")
       .only_with("files")
       .key("start_s", &ImageRecipe::start_s, number({-1e6, 1e6}), "s",

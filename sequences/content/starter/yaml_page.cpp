@@ -8,8 +8,8 @@
 #include <cstdio>
 #include <sstream>
 
-#include "sequences/content/utf8.h"
 #include "sequences/content/value_type.h"
+#include "sequences/files/utf8.h"
 
 namespace talisman::sequences {
 

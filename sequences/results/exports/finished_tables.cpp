@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <iterator>
 #include <memory>
 
-#include "sequences/files/errors.h"
+#include "sequences/files/file_text.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/finished_run.h"
+#include "sequences/results/json_text.h"
 
 namespace talisman::sequences {
 
@@ -31,11 +32,11 @@ Json read_summary(const std::string& folder) {
                            "), the same command with --resume continues it",
                        folder);
   const std::string file = in(folder, "summary.json");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream)
+  const std::optional<std::string> text = text_of_file(file);
+  if (!text)
     throw InputError("holds no results (no summary.json), must be the folder of a render or a plan", folder);
-  Json summary = Json::parse(std::string(std::istreambuf_iterator<char>(stream), {}), nullptr, false);
-  if (!summary.is_object() || summary.value("schema", "") != run_table().schema)
+  Json summary = Json::parse(*text, nullptr, false);
+  if (!summary.is_object() || text_in(summary, "schema") != run_table().schema)
     throw InputError("is not a summary of ours, must be of schema " + run_table().schema, file);
   if (!summary.contains("layers") || !summary["layers"].is_array() || !summary.contains("effects") ||
       !summary["effects"].is_object() || !summary.contains("frames") ||
@@ -54,7 +55,7 @@ std::int64_t read_lines(const std::string& file, const std::string& schema,
   for (std::string text; std::getline(lines, text);) {
     const Json json = Json::parse(text, nullptr, false);
     ++number;
-    const std::string found = json.is_object() ? json.value("schema", "") : "";
+    const std::string found = text_in(json, "schema");
     if (std::find(others.begin(), others.end(), found) != others.end()) continue;
     if (found != schema) throw InputError("is no line of ours, must be of schema " + schema, file, number);
     show(json);
@@ -92,9 +93,11 @@ void read_effects(const Json& summary, const Show& show) {
 std::vector<FinishedTable> finished_tables(const std::string& folder, bool with_timing) {
   const auto summary = std::make_shared<const Json>(read_summary(folder));
   std::vector<FinishedTable> tables;
-  tables.push_back({"decisions", flat_columns(decision_table()), [folder](const Show& show) {
-                      read_lines(in(folder, "decisions.jsonl"), decision_table().schema, {}, show);
-                    }});
+  const Json run = Json::parse(text_of_file(in(folder, "run.json")).value_or(""), nullptr, false);
+  if (!run.is_object() || decisions_kept(run) != "none")
+    tables.push_back({"decisions", flat_columns(decision_table()), [folder](const Show& show) {
+                        read_lines(in(folder, "decisions.jsonl"), decision_table().schema, {}, show);
+                      }});
   tables.push_back({"frames", flat_columns(frame_table()), [folder, summary](const Show& show) {
                       read_frames(in(folder, "frames.jsonl"), (*summary)["frames"].get<std::int64_t>(), show);
                     }});

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/exports/sqlite_export.h"
 
+#include <algorithm>
 #include <memory>
 
 #include <sqlite3.h>
@@ -103,7 +104,10 @@ std::string export_sqlite(const std::string& folder, bool with_timing) {
       Insertion insertion(database, table);
       table.read([&](const ExportedRow& row) { insertion.insert(row); });
     }
-    database.run("CREATE INDEX decisions_by_layer ON decisions (layer, frame); COMMIT");
+    const bool has_decisions = std::any_of(
+        tables.begin(), tables.end(), [](const FinishedTable& table) { return table.name == "decisions"; });
+    if (has_decisions) database.run("CREATE INDEX decisions_by_layer ON decisions (layer, frame)");
+    database.run("COMMIT");
   });
   return name;
 }

@@ -240,6 +240,7 @@ std::string export_trace(const std::string& folder, bool with_timing) try {
   const std::string target = folder + "/" + name;
   const std::vector<FinishedTable> tables = finished_tables(folder, with_timing);
   const Json run = finished_run(folder);
+  require_all_decisions(run, folder, "a trace");
   const double fps = run.at("settings").at("fps").get<double>();
   if (!(fps > 0)) throw InputError("fps is " + run["settings"]["fps"].dump() + ", must be above 0", folder);
   write_atomically(target, [&](const std::string& temporary) {

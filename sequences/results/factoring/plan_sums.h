@@ -18,7 +18,7 @@ inline int renders_in(const Summary& summary) {
 inline double modelled_ms(const Summary& summary) {
   double sum = 0;
   for (const LayerSummary* row : summary.rows()) sum += row->render_ms;
-  return summary.frames.empty() ? 0 : sum / static_cast<double>(summary.frames.size());
+  return summary.frame_count() == 0 ? 0 : sum / summary.frame_count();
 }
 
 }  // namespace talisman::sequences

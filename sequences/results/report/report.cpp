@@ -9,6 +9,7 @@
 #include "sequences/pictures/page_assets.h"
 #include "sequences/pictures/page_text.h"
 #include "sequences/pictures/scatter.h"
+#include "sequences/results/json_text.h"
 #include "sequences/results/reason_kind.h"
 #include "sequences/results/report/verdict.h"
 
@@ -27,7 +28,7 @@ double number_in(const Json& json, const char* key) {
 }
 
 std::string page_name(const ReportRun& run) {
-  return run.run.value("sequence", "") + (run.run.value("kind", "") == "plan" ? " (plan)" : "");
+  return text_in(run.run, "sequence") + (text_in(run.run, "kind") == "plan" ? " (plan)" : "");
 }
 
 std::string data_url(const Thumbnail& thumbnail) { return "data:image/png;base64," + base64(thumbnail.png); }

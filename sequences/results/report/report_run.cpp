@@ -6,11 +6,12 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
-#include <iterator>
 
 #include "regulator/profile.h"
-#include "sequences/files/errors.h"
+#include "sequences/files/file_text.h"
 #include "sequences/results/column_tables.h"
+#include "sequences/results/finished_run.h"
+#include "sequences/results/json_text.h"
 #include "sequences/results/reason_kind.h"
 #include "sequences/results/report/changes_beside.h"
 #include "sequences/results/report/thumbnails.h"
@@ -26,16 +27,17 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kMostBytes = 8'200'000;
 
 std::vector<ColumnInfo> columns_of_page(std::vector<ColumnInfo> columns) {
-  // A hash of every picture is no number to look at, and cannot be made smaller.
-  std::erase_if(columns, [](const ColumnInfo& c) { return c.name == "frame_hash"; });
+  // Hashes of every picture are no numbers to look at, and cannot be made smaller.
+  std::erase_if(columns,
+                [](const ColumnInfo& c) { return c.name == "frame_hash" || c.name == "picture_hash"; });
   return columns;
 }
 
 /// Null where it is not there, or not whole.
 Json file_as_json(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return nullptr;
-  Json json = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
+  const std::optional<std::string> text = text_of_file(path);
+  if (!text) return nullptr;
+  Json json = Json::parse(*text, nullptr, false);
   return json.is_discarded() ? Json(nullptr) : json;
 }
 
@@ -246,7 +248,7 @@ void read_timing(ReportRun& run, const std::vector<ColumnInfo>& columns) {
       file, columns, timing_table().schema, [&](const std::vector<Cell>& row) { run.timing.add(row); },
       [&](const std::string& text) {
         Json json = Json::parse(text, nullptr, false);
-        if (json.is_object() && json.value("schema", "") == "talisman.timing_total/1")
+        if (json.is_object() && text_in(json, "schema") == "talisman.timing_total/1")
           run.timing_total = std::move(json);
       });
 }
@@ -316,13 +318,14 @@ ReportRun read_report_run(const std::string& folder, bool thumbnails) {
                 PackedTable(std::move(of_page), "layer"),
                 PackedTable(frames),
                 PackedTable(timing)};
-  if (!run.run.is_object() || run.run.value("schema", "").rfind("talisman.run/", 0) != 0 ||
+  if (!run.run.is_object() || text_in(run.run, "schema").rfind("talisman.run/", 0) != 0 ||
       !run.run.contains("settings") || !run.run["settings"].is_object())
     throw InputError("holds no run (no run.json of ours), must be the folder of a render or a plan", folder);
+  require_all_decisions(run.run, folder, "a report");
   const bool is_partial = fs::exists(folder + "/decisions.jsonl.partial", error);
   run.is_complete = run.summary.is_object() && !is_partial;
   if (!run.is_complete) run.summary = nullptr;
-  if (thumbnails && run.run.value("kind", "") == "render") run.thumbnails = thumbnails_of(folder);
+  if (thumbnails && text_in(run.run, "kind") == "render") run.thumbnails = thumbnails_of(folder);
   read_decisions(run, decisions);
   read_frames(run, frames);
   read_timing(run, timing);

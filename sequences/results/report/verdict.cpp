@@ -3,6 +3,7 @@
 
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page_text.h"
+#include "sequences/results/json_text.h"
 
 namespace talisman::sequences {
 
@@ -46,7 +47,7 @@ std::string modelled_ms(const ReportRun& run) {
   const std::string drawing =
       formatted("%.3g ms for drawing (reference %.3g ms)", sums.modelled_drawing_ms / sums.frames,
                 sums.modelled_reference_ms / sums.frames);
-  if (run.run.value("kind", "") == "plan") return "modelled " + drawing + " a frame";
+  if (text_in(run.run, "kind") == "plan") return "modelled " + drawing + " a frame";
   return formatted("modelled %.3g ms a frame, of it ", sums.modelled_ms / sums.frames) + drawing;
 }
 
@@ -72,7 +73,7 @@ std::string what_ran(const ReportRun& run) {
 std::string verdict_on(const ReportRun& run) {
   const FrameSums& sums = run.sums;
   if (sums.frames == 0) return "No frame is complete yet.";
-  std::string text = run.run.value("kind", "") == "plan" ? "Would draw " : "Drew ";
+  std::string text = text_in(run.run, "kind") == "plan" ? "Would draw " : "Drew ";
   text += drawn_of(sums.polygons, sums.polygons_reference, "polygons") + " and " +
           drawn_of(sums.pixels, sums.pixels_reference, "texels") + " of what reference draws, " +
           modelled_ms(run);

@@ -14,10 +14,10 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 Json what_if_plan(double factor, double geometric_px, const Summary& summary) {
-  double ms = 0, max_px = 0;
-  for (const FrameLine& line : summary.frames) ms += line.modelled_drawing_ms;
+  double max_px = 0;
+  const double ms = summary.total(&FrameLine::modelled_drawing_ms);
   for (const LayerSummary& layer : summary.layers) max_px = std::max(max_px, layer.max_geometric_px);
-  const auto frames = static_cast<double>(std::max<std::size_t>(1, summary.frames.size()));
+  const auto frames = std::max(1, summary.frame_count());
   return {{"factor", factor},
           {"geometric_px", geometric_px},
           {"mean_update_rate", summary.mean_update_rate()},

@@ -207,13 +207,13 @@ const std::vector<Fault> kSchemaFaults = {
     {15, "sky: {kind: backdrop, azimuth_deg: [-86, 85]}", "azimuth_deg[0] is '-86'"},
     {15, "sky: {elevation_deg: [-91, 0]}", "elevation_deg[0] is '-91'"},
     // Numbers.
-    {3, "fps: 0", "a number above 0, at most 1000"},
-    {3, "fps: 1000.5", "a number above 0, at most 1000"},
+    {3, "fps: 0", "a number from 1e-09 to 1000"},
+    {3, "fps: 1000.5", "a number from 1e-09 to 1000"},
     {3, "fps: fast", "fps is 'fast'"},
     {3, "fps: .inf", "fps is '.inf'"},
     {34, "clip_margin: -0.1", "a number from 0 to 1"},
     {34, "clip_margin: 1.1", "a number from 0 to 1"},
-    {18, "  - {kind: ambient, intensity: -1}", "a number from 0 upwards"},
+    {18, "  - {kind: ambient, intensity: -1}", "a number from 0 to 1e+09"},
     {28, "regulator: {magnification: 0.5}", "a number from 1"},
     {2, "frames: 2.5", "a whole number from 1"},
     {32, "placement: {slab_directions: 31}", "a whole number from 2 to 30"},
@@ -240,8 +240,8 @@ const std::vector<Fault> kSchemaFaults = {
     // Either of two types.
     {23, "  - {name: all, parts: ['*'], fade: 2}", "a number from 0 to 1"},
     {23, "  - {name: all, parts: ['*'], fade: [{t: 0, value: 2}]}", "a number from 0 to 1"},
-    {8, "  - {id: ball, sphere: 0}", "a number above 0"},
-    {8, "  - {id: ball, sphere: [1, 1, 0]}", "every side above 0"},
+    {8, "  - {id: ball, sphere: 0}", "a number from 1e-09 to 1e+09"},
+    {8, "  - {id: ball, sphere: [1, 1, 0]}", "each from 1e-09 to 1e+09"},
 };
 
 TEST(SequenceSchema, WhatIsWrongIsRefusedByBoth) {

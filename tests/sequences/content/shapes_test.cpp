@@ -163,7 +163,7 @@ TEST(LoadSequence, WrongShapesAreRefusedWithTheirLine) {
   EXPECT_THAT(shape_error("  - {id: a}\n"), HasSubstr("test.yaml:4: shapes[0]"));
   EXPECT_THAT(shape_error("  - {id: a}\n"), HasSubstr("box, sphere, cylinder, plane and disc"));
   EXPECT_THAT(shape_error("  - {id: a, box: [1, 1, 1], sphere: 2}\n"), HasSubstr("not two"));
-  EXPECT_THAT(shape_error("  - {id: a, box: [1, 0, 1]}\n"), HasSubstr("every side above 0"));
+  EXPECT_THAT(shape_error("  - {id: a, box: [1, 0, 1]}\n"), HasSubstr("each from 1e-09 to 1e+09"));
   EXPECT_THAT(shape_error("  - {id: a, sphere: -1}\n"), HasSubstr("shapes[0].sphere"));
   EXPECT_THAT(shape_error("  - {id: a, sphere: 1, segments: 2}\n"), HasSubstr("segments"));
   EXPECT_THAT(shape_error("  - {id: a, sphere: 1, taper: 0.5}\n"), HasSubstr("only together with cylinder"));

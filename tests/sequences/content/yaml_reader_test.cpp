@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/content/utf8.h"
+#include "sequences/files/utf8.h"
 #include "tests/sequences/temporary_folder.h"
 
 namespace talisman::sequences {

@@ -267,7 +267,7 @@ TEST(ExtendedCompositor, ReasonsAndCountersTellOfExpressions) {
   Summary summary = start_summary(pipeline, s.name);
   summary.planned_only = true;
   summary.frames = {*line, *line};
-  EXPECT_EQ(summary.resolved(), (ResolvedCounters{2, 6, 2, 12, 12}));
+  EXPECT_EQ(summary.sums().resolved(), (ResolvedCounters{2, 6, 2, 12, 12}));
   EXPECT_THAT(json_of(summary), HasSubstr("\"compositor\": \"extended\""));
   EXPECT_THAT(table_of(summary), HasSubstr("12 reads, 12 operators, 2 registers"));
 }

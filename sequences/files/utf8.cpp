@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/content/utf8.h"
+#include "sequences/files/utf8.h"
 
 #include <array>
 #include <cstdint>
@@ -44,6 +44,21 @@ std::optional<std::size_t> first_not_utf8(std::string_view text) {
     at += length;
   }
   return std::nullopt;
+}
+
+std::string utf8_from(std::string_view text) {
+  std::string good;
+  good.reserve(text.size());
+  while (const std::optional<std::size_t> wrong = first_not_utf8(text)) {
+    good.append(text.substr(0, *wrong));
+    const auto byte = static_cast<std::uint8_t>(text[*wrong]);
+    if (byte == 0)
+      good.append("\xE2\x90\x80");
+    else
+      good.append({static_cast<char>(0xC0 | byte >> 6), static_cast<char>(0x80 | (byte & 0x3F))});
+    text.remove_prefix(*wrong + 1);
+  }
+  return good.append(text);
 }
 
 }  // namespace talisman::sequences
