@@ -85,7 +85,7 @@ std::string html_table(const std::string& id, const std::string& caption,
     return static_cast<int>(k) < text_columns ? "" : " class=\"n\"";
   };
   std::string text = "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"" +
-                     (caption.empty() ? label : caption) + "\"><table id=\"" + id + "\">" +
+                     (label.empty() ? caption : label) + "\"><table id=\"" + id + "\">" +
                      (caption.empty() ? "" : "<caption>" + caption + "</caption>") + "\n<thead><tr>";
   for (std::size_t k = 0; k < header.size(); ++k)
     text += "<th scope=\"col\"" + std::string(class_of(k)) + ">" + header[k] + "</th>";

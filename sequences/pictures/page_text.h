@@ -27,7 +27,8 @@ std::string number_element(double value, int digits = 3);
 std::string large(double value);
 
 /// A table with a caption, in a region of its own that can be scrolled by keys; cells are HTML. Columns after the first
-/// `text_columns` are right-aligned. `label` names the region where there is no caption.
+/// `text_columns` are right-aligned. `label` names the region where the caption does not, or
+/// is not the only one of its words.
 std::string html_table(const std::string& id, const std::string& caption,
                        const std::vector<std::string>& header,
                        const std::vector<std::vector<std::string>>& rows, int text_columns,

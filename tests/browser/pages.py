@@ -123,15 +123,15 @@ def check_reports(driver, tool, out, axe):
 
 def check_experiments(driver, tool, out, axe):
     shots = out / "shots"
-    run(tool, "accuracy", "--hard", "--progress", "none", "--out", out / "hard")
-    page = out / "hard" / "hard.html"
-    check_looks(driver, axe, "hard", shots, lambda: driver.get(f"file://{page}"))
+    run(tool, "reproduce", "--quick", "--only", "LS97:15", "--progress", "none", "--out", out / "reproduce")
+    page = out / "reproduce" / "reproduce.html"
+    check_looks(driver, axe, "reproduce", shots, lambda: driver.get(f"file://{page}"))
     log = [entry["message"] for entry in driver.get_log("browser")]
     assert not log, f"{page}: the console says {log}"
     before = driver.execute_script("return getComputedStyle(document.body).backgroundColor")
     driver.find_element("id", "theme").send_keys("\n")  # by a key
     assert driver.execute_script("return getComputedStyle(document.body).backgroundColor") != before, "the theme does not change"
-    check_print(driver, "hard", shots)
+    check_print(driver, "reproduce", shots)
 
 
 def check_view(driver, tool, out, axe):

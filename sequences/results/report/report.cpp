@@ -63,6 +63,14 @@ std::string still_svg(const ReportRun& run) {
          ": solid outlines were drawn for it, dashed ones are older sprites, warped.</figcaption></figure>\n";
 }
 
+/// A table of a run; with a suffix it is one of two, and its name says so.
+std::string table_of_run(const std::string& id, const std::string& suffix, const std::string& caption,
+                         const std::vector<std::string>& header,
+                         const std::vector<std::vector<std::string>>& rows, int text_columns) {
+  const std::string label = suffix.empty() ? "" : caption + ", run " + (suffix == "-a" ? "A" : "B");
+  return html_table(id + suffix, caption, header, rows, text_columns, label);
+}
+
 std::string layers_table(const ReportRun& run, const std::string& suffix) {
   std::vector<const LayerCounts*> layers;
   for (const LayerCounts& layer : run.layers) layers.push_back(&layer);
@@ -85,10 +93,10 @@ std::string layers_table(const ReportRun& run, const std::string& suffix) {
   }
   std::string caption = "Layers, the dearest first";
   if (layers.size() > kMostRows) caption += formatted(": %zu of %zu", kMostRows, layers.size());
-  return html_table("layers" + suffix, caption,
-                    {"layer", "mostly drawn for", "renders", "reuses", "rate %", "polygons", "texels",
-                     "mean px", "max px", "in frame"},
-                    rows, 2);
+  return table_of_run("layers", suffix, caption,
+                      {"layer", "mostly drawn for", "renders", "reuses", "rate %", "polygons", "texels",
+                       "mean px", "max px", "in frame"},
+                      rows, 2);
 }
 
 std::string reasons_table(const ReportRun& run, const std::string& suffix) {
@@ -98,8 +106,8 @@ std::string reasons_table(const ReportRun& run, const std::string& suffix) {
     rows.push_back({escaped(reason.decision), escaped(reason.words), std::to_string(reason.times),
                     reason.median ? number_element(*reason.median) + " " + escaped(reason.unit) : ""});
   }
-  return html_table("reasons" + suffix, "Reasons, the most frequent first",
-                    {"decision", "reason", "times", "median value"}, rows, 2);
+  return table_of_run("reasons", suffix, "Reasons, the most frequent first",
+                      {"decision", "reason", "times", "median value"}, rows, 2);
 }
 
 std::string worst_table(const ReportRun& run, const std::string& suffix) {
@@ -110,8 +118,8 @@ std::string worst_table(const ReportRun& run, const std::string& suffix) {
                         escaped(url_encoded(worst.layer)) + "\">" + std::to_string(worst.frame) + "</a>",
                     number_element(worst.geometric_px, 4)});
   }
-  return html_table("worst" + suffix, "The worst decisions: what is displayed is farthest from its place",
-                    {"layer", "decision", "reason", "frame", "error px"}, rows, 3);
+  return table_of_run("worst", suffix, "The worst decisions: what is displayed is farthest from its place",
+                      {"layer", "decision", "reason", "frame", "error px"}, rows, 3);
 }
 
 std::string what_if_table(const ReportRun& run, const std::string& suffix) {
@@ -125,8 +133,8 @@ std::string what_if_table(const ReportRun& run, const std::string& suffix) {
                     large(number("pixels_rendered")), number_element(number("modelled_drawing_ms")),
                     number_element(number("max_geometric_px"))});
   }
-  return html_table(
-      "what-if" + suffix, "What would another threshold cost? Planned with the same sequence",
+  return table_of_run(
+      "what-if", suffix, "What would another threshold cost? Planned with the same sequence",
       {"threshold", "of this run's", "rate %", "polygons", "texels", "modelled drawing ms", "max px"}, rows,
       1);
 }
@@ -183,11 +191,11 @@ std::string audit_table_of(const ReportRun& run, const std::string& suffix) {
                     cell("audited"), cell("beyond"), cell("worst_frame"), cell("geometric_px"),
                     cell("shift_p95_px"), cell("photometric"), cell("rms")});
   }
-  return html_table("audit" + suffix,
-                    "Audit: did the fiducials tell the truth? Of each layer the worst audited frame",
-                    {"layer", "", "should have spoken", "reuses", "audited", "beyond", "in frame", "said px",
-                     "seen px", "said light", "seen light"},
-                    rows, 3);
+  return table_of_run("audit", suffix,
+                      "Audit: did the fiducials tell the truth? Of each layer the worst audited frame",
+                      {"layer", "", "should have spoken", "reuses", "audited", "beyond", "in frame",
+                       "said px", "seen px", "said light", "seen light"},
+                      rows, 3);
 }
 
 /// Layers that one of two runs has and the other has not.
