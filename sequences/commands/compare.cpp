@@ -12,6 +12,7 @@
 
 #include "sequences/commands/compared_run.h"
 #include "sequences/commands/run_words.h"
+#include "sequences/commands/stop.h"
 #include "sequences/commands/words.h"
 #include "sequences/experiments/comparison/report.h"
 #include "sequences/experiments/comparison/side_by_side.h"
@@ -122,6 +123,7 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
 }
 
 int run_compare(const CompareOptions& options, const std::atomic<bool>& stop, std::ostream& out) {
+  heeds_stop = true;
   using oneapi::tbb::global_control;
   require_settings(options.settings);
   choice("--progress", options.line.progress, kProgressWords);

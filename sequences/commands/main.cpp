@@ -20,6 +20,7 @@
 #include "sequences/commands/options.h"
 #include "sequences/commands/parse_error.h"
 #include "sequences/commands/run_words.h"
+#include "sequences/commands/stop.h"
 #include "sequences/commands/warps.h"
 #include "sequences/files/freed_memory.h"
 #include "sequences/files/terminal_text.h"
@@ -32,12 +33,11 @@ using namespace talisman::sequences;
 std::atomic<bool> stop_requested = false;
 static_assert(std::atomic<bool>::is_always_lock_free, "set from a signal handler");
 
-/// What is at work is finished; who asks twice does not wait for it.
 extern "C" void on_stop_signal(int signal) {
-  if (stop_requested.exchange(true)) {
-    std::signal(signal, SIG_DFL);
-    std::raise(signal);
-  }
+  stop_requested = true;
+  if (heeds_stop) return;
+  std::signal(signal, SIG_DFL);
+  std::raise(signal);
 }
 
 int fail(const std::string& what, int code) {

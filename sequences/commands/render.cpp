@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/commands/render.h"
+#include "sequences/commands/stop.h"
 
 #include <cstdio>
 #include <optional>
@@ -82,6 +83,7 @@ void require_video(const RunOutcome& outcome) {
 }  // namespace
 
 int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool>& stop, std::ostream& out) {
+  heeds_stop = true;
   using oneapi::tbb::global_control;
   const Sequence sequence = load_with_warnings(line);
   ResolvedRun resolved = resolve(line, sequence, plan_only);

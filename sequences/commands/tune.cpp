@@ -10,6 +10,7 @@
 
 #include "sequences/commands/option_group.h"
 #include "sequences/commands/run_words.h"
+#include "sequences/commands/stop.h"
 #include "sequences/commands/words.h"
 #include "sequences/experiments/tuning/report.h"
 #include "sequences/files/errors.h"
@@ -96,6 +97,7 @@ void add_tune_options(CLI::App& command, TuneOptions& options) {
 }
 
 int run_tune(const TuneOptions& options, const std::atomic<bool>& stop, std::ostream& out) {
+  heeds_stop = true;
   using oneapi::tbb::global_control;
   const TuneGoal goal = goal_of(options);
   choice("--progress", options.line.progress, kProgressWords);

@@ -9,6 +9,7 @@
 
 #include "sequences/commands/ineffective.h"
 #include "sequences/commands/run_words.h"
+#include "sequences/commands/stop.h"
 #include "sequences/commands/words.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/freed_memory.h"
@@ -120,6 +121,7 @@ ViewSource view_source(const ViewOptions& options) {
 }
 
 int run_view(const ViewOptions& options, const std::atomic<bool>& stop, std::ostream& out) {
+  heeds_stop = true;
   constexpr int kLargestPort = 65535;
   if (options.port < 0 || options.port > kLargestPort)
     throw InputError("--port is " + std::to_string(options.port) + ", must be from 0 (any) to 65535");

@@ -19,7 +19,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kShort = " --frames 0-2 --size 64x48 --progress none --out ";
+const std::string kThreeFrames = " --frames 0-2 --size 64x48 --progress none --out ";
 
 class KeptFrames : public Tool {
  protected:
@@ -41,7 +41,7 @@ class KeptFrames : public Tool {
 };
 
 TEST_F(KeptFrames, ArePicturesThatAreStillAsTheyWereWritten) {
-  const std::string options = "render passing.yaml" + kShort;
+  const std::string options = "render passing.yaml" + kThreeFrames;
   ASSERT_EQ(run(options + "whole").exit_code, 0);
   ASSERT_EQ(run(options + "o").exit_code, 0);
   const std::string good = read("whole/frames/0001.png");
@@ -73,7 +73,7 @@ TEST_F(KeptFrames, ArePicturesOfEveryFormatAndTheOnesBesideThem) {
       {"--separate", "separate/0001-wall.png"},
       {"--separate --format none", "separate/0001-wall-sum.png"}};
   for (const auto& [option, file] : cases) {
-    const std::string options = std::string("render passing.yaml ") + option + kShort;
+    const std::string options = std::string("render passing.yaml ") + option + kThreeFrames;
     ASSERT_EQ(run(options + "whole").exit_code, 0) << option;
     ASSERT_EQ(run(options + "o").exit_code, 0) << option;
     const Outcome all = run(options + "o --resume");
@@ -90,7 +90,7 @@ TEST_F(KeptFrames, ArePicturesOfEveryFormatAndTheOnesBesideThem) {
 }
 
 TEST_F(KeptFrames, AVideoThatCannotBeMadeIsSaidBeforeAnythingIsTouched) {
-  const std::string options = "render passing.yaml --video" + kShort + "o";
+  const std::string options = "render passing.yaml --video" + kThreeFrames + "o";
   const Outcome missing = run(options, "env PATH=/nonexistent");
   EXPECT_EQ(missing.exit_code, 1);
   EXPECT_THAT(missing.output, HasSubstr("ffmpeg cannot be started"));
@@ -101,13 +101,13 @@ TEST_F(KeptFrames, AVideoThatCannotBeMadeIsSaidBeforeAnythingIsTouched) {
   EXPECT_EQ(run(options, "env PATH=\"$PWD/bin:$PATH\"").exit_code, 1);
   EXPECT_FALSE(fs::exists(folder_ / "o"));
   const Outcome compared =
-      run("compare passing.yaml threshold:1 hold:3" + kShort + "c", "env PATH=/nonexistent");
+      run("compare passing.yaml threshold:1 hold:3" + kThreeFrames + "c", "env PATH=/nonexistent");
   EXPECT_EQ(compared.exit_code, 1) << compared.output;
   EXPECT_FALSE(fs::exists(folder_ / "c"));
 }
 
 TEST_F(KeptFrames, OutlastAVideoThatFails) {
-  const std::string options = "render passing.yaml --video" + kShort + "o";
+  const std::string options = "render passing.yaml --video" + kThreeFrames + "o";
   for (const std::string then : {"kill -9 $$", "exit 1", "exit 0"}) {
     write_encoder(then);
     const Outcome killed = run(options, "env PATH=\"$PWD/bin:$PATH\"");
@@ -173,10 +173,10 @@ TEST_F(KeptFrames, DecisionsMayBeLeftOutAndWhoNeedsThemSaysSo) {
   ASSERT_EQ(run(options + "all").exit_code, 0);
   ASSERT_EQ(run(options + "changed --decisions changed").exit_code, 0);
   ASSERT_EQ(run(options + "none --decisions none").exit_code, 0);
-  for (const std::string out : {"changed", "none"}) {
+  for (const std::string& out : {std::string("changed"), std::string("none")}) {
     EXPECT_EQ(read("all/summary.json"), read(out + "/summary.json"));
     EXPECT_EQ(read("all/frames.jsonl"), read(out + "/frames.jsonl"));
-    for (const std::string command :
+    for (const std::string& command :
          {"report " + out, "export --trace " + out, "explain " + out + " --frame 3", "diff all " + out})
       expect_bad_input(command, {"--decisions " + out, "needs all"});
     EXPECT_EQ(run("export --csv --sqlite " + out).exit_code, 0);
@@ -217,7 +217,7 @@ TEST_F(KeptFrames, OfModelsThatTakeTooMuchAreNone) {
   write("big.obj",
         "mtllib big.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3\n");
   write("big.ppm", "P6\n16384 16384\n255\n");  // 1.9 GB, of which not a byte is there
-  const std::string plan = "plan big.obj --no-cache" + kShort + "o ";
+  const std::string plan = "plan big.obj --no-cache" + kThreeFrames + "o ";
   expect_bad_input(plan + "--import-memory-mb 1500", {"big.obj: texture '", "big.ppm' of 16384",
                                                       "1793 MB to decode", "--import-memory-mb raises that"});
   expect_bad_input(plan + "--import-limit-s 0", {"--import-limit-s is 0", "from 1 to"});
@@ -226,7 +226,7 @@ TEST_F(KeptFrames, OfModelsThatTakeTooMuchAreNone) {
   std::string many = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
   for (int k = 0; k < 400000; ++k) many += "v 0.5 1 2\nf 1 2 " + std::to_string(4 + k) + "\n";
   write("many.obj", many);
-  expect_bad_input("plan many.obj --no-cache --import-memory-mb 64" + kShort + "o",
+  expect_bad_input("plan many.obj --no-cache --import-memory-mb 64" + kThreeFrames + "o",
                    {"many.obj: ", "--import-memory-mb"});
 }
 
@@ -239,7 +239,7 @@ TEST_F(KeptFrames, OfAModelThatTakesTooLongAreNone) {
     name += " " + std::to_string(k + 2);
   }
   write("slow.obj", polygon + name + "\n");  // one face of 30,000 corners that cross each other
-  const Outcome outcome = run("plan slow.obj --no-cache --import-limit-s 1" + kShort + "o");
+  const Outcome outcome = run("plan slow.obj --no-cache --import-limit-s 1" + kThreeFrames + "o");
   if (outcome.exit_code == 0) GTEST_SKIP() << "read within a second";
   EXPECT_EQ(outcome.exit_code, 2) << outcome.output;
   EXPECT_THAT(outcome.output,
