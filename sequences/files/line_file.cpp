@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 
+#include <algorithm>
+#include <fstream>
 #include <optional>
 
 #include "sequences/files/file_text.h"
@@ -35,6 +37,16 @@ std::vector<std::string> lines_written(const std::string& path) {
   std::vector<std::string> lines;
   for (std::size_t start = 0, end; (end = text.find('\n', start)) != std::string::npos; start = end + 1)
     lines.push_back(text.substr(start, end - start));
+  return lines;
+}
+
+std::size_t count_lines_written(const std::string& path) {
+  std::ifstream in(path + ".partial", std::ios::binary);
+  if (!in) in.open(path, std::ios::binary);
+  std::vector<char> block(1 << 16);
+  std::size_t lines = 0;
+  while (in.read(block.data(), static_cast<std::streamsize>(block.size())) || in.gcount() > 0)
+    lines += static_cast<std::size_t>(std::count(block.begin(), block.begin() + in.gcount(), '\n'));
   return lines;
 }
 

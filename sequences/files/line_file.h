@@ -32,4 +32,7 @@ class LineFile {
 /// a crash) is left out.
 std::vector<std::string> lines_written(const std::string& path);
 
+/// How many these are, without holding them.
+std::size_t count_lines_written(const std::string& path);
+
 }  // namespace talisman::sequences

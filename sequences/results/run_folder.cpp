@@ -110,7 +110,7 @@ void remove_old_results(const RunOptions& options, bool pictures_are_ours) {
 }
 
 /// How many frames an earlier run finished, whether it came to its end or not.
-std::size_t frames_written(const std::string& out) { return lines_written(out + "/frames.jsonl").size(); }
+std::size_t frames_written(const std::string& out) { return count_lines_written(out + "/frames.jsonl"); }
 
 /// "replaces the run of 16 frames in DIR; --resume would continue it".
 std::string news_of(const RunOptions& options, const Json& earlier, const Json& run) {

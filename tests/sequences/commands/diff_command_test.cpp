@@ -152,12 +152,12 @@ TEST_F(DiffTest, MapsAreViewablePictures) {
   EXPECT_THAT(out.str(), HasSubstr(std::to_string(diff(options_).frames[0].quality.flip).substr(0, 6)));
 }
 
-TEST_F(DiffTest, MapFolderThatCannotBeMadeIsAnOutputError) {
+TEST_F(DiffTest, MapFolderBelowAFileIsBadInput) {
   put("a/0000.png", shade(1)), put("b/0000.png", shade(2));
   std::ofstream(path("file")) << "x";
   options_.map_dir = path("file/maps");
   std::ostringstream out;
-  EXPECT_THROW(run_diff(options_, out), OutputError);
+  EXPECT_THROW(run_diff(options_, out), InputError);
 }
 
 TEST_F(DiffTest, SizesThatDifferAreNamed) {

@@ -276,7 +276,7 @@ TEST(ImageRefusal, EachBadInputNamesFileValueAndRule) {
   EXPECT_THAT(refusal(folder, "files: \"gone/*.png\"" + on_screen),
               HasSubstr("'gone' is not there, rule: a folder"));
   EXPECT_THAT(refusal(folder, "file: a.png, screen_px: [0, 0, 0, 8]"), HasSubstr("width and height above 0"));
-  EXPECT_THAT(refusal(folder, "file: a.png, size_m: [0, 8]"), HasSubstr("above 0"));
+  EXPECT_THAT(refusal(folder, "file: a.png, size_m: [0, 8]"), HasSubstr("a number from 1e-09"));
   EXPECT_THAT(refusal(folder, "file: a.png"), HasSubstr("screen_px"));
   EXPECT_THAT(refusal(folder, "file: a.png, on: [gone]"),
               HasSubstr("on 'gone' matches no part, rule: each matches a part"));

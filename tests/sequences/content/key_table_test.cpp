@@ -117,7 +117,7 @@ TEST(KeyDocs, ARowSaysValueUnitDefaultAndMeaning) {
             "### Keys of thing\n\n"
             "| key | value | unit | without it | meaning |\n"
             "|---|---|---|---|---|\n"
-            "| `size_m` | a number above 0 | m | required | its size |\n"
+            "| `size_m` | a number from 1e-09 to 1e+09 | m | required | its size |\n"
             "| `share` | a number from 0 to 1 | | `0.25` | its share |\n"
             "| `turn_deg` | a number from -90 to 90 | ° | | its turn. Not together with `share` |\n"
             "| `big` | true or false | | `false` | whether. Only together with `share` |\n"
@@ -157,7 +157,7 @@ TEST(JsonSchema, ADefinitionSaysWhatTheTableSays) {
   EXPECT_EQ(thing["additionalProperties"], false);
   EXPECT_EQ(
       thing["properties"]["size_m"],
-      nlohmann::json::parse(R"({"type": "number", "exclusiveMinimum": 0.0, "description": "its size [m]"})"));
+      nlohmann::json::parse(R"({"type": "number", "minimum": 1e-09, "maximum": 1e9, "description": "its size [m]"})"));
   EXPECT_EQ(thing["properties"]["share"]["default"], 0.25);
   EXPECT_EQ(thing["properties"]["kind"]["enum"], nlohmann::json::parse(R"(["plain", "striped"])"));
   EXPECT_EQ(thing["properties"]["kind"]["default"], "plain");

@@ -40,7 +40,7 @@ TEST(YamlText, ReadsBackAsItWas) {
 TEST(YamlText, BytesThatAreNoUtf8AreQuestionMarks) { EXPECT_EQ(yaml_text("b\xf6se"), "\"b?se\""); }
 
 TEST(YamlNumber, ReadsBackToTheSameBits) {
-  for (const double value : {0.1, 1.0 / 3, 1e-20, 6.02e23, -0.0, 4.9e-324, 24.0}) {
+  for (const double value : {0.1, 1.0 / 3, 1e-20, 6.02e8, -0.0, 4.9e-324, 24.0}) {
     const YamlMap map = read_yaml_text("a: " + yaml_number(value) + "\n", "t.yaml");
     EXPECT_EQ(map.find("a")->number(), value);
   }

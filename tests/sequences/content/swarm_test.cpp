@@ -145,7 +145,7 @@ TEST(Swarm, BadInputIsRefusedWithFileLineAndRule) {
                          {4, "swarm: {rotation_deg: .inf}", "swarm.rotation_deg"},
                          {4, "swarm: {cube: 0}", "swarm.cube"},
                          {4, "swarm: {shape: ball}", "quad, block, sphere"},
-                         {4, "swarm: {count: 1000000, translation: 1e30, cube: 1e-30}", "20 million"},
+                         {4, "swarm: {count: 1000000, translation: 1e9, cube: 1e-9}", "20 million"},
                          {4, "swarm: {colour: 3}", "colour"}},
                         load);
 }

@@ -50,10 +50,10 @@ TEST(FolderLock, WhatAKilledOwnerLeftIsTakenOver) {
   EXPECT_NO_THROW(FolderLock{out});
 }
 
-TEST(FolderLock, FolderThatCannotBeMadeIsAnOutputError) {
+TEST(FolderLock, FolderBelowAFileIsBadInput) {
   const tests::TemporaryFolder folder;
   folder.write("file", "x");
-  EXPECT_THROW(FolderLock(folder / "file/out"), OutputError);
+  EXPECT_THROW(FolderLock(folder / "file/out"), InputError);
 }
 
 }  // namespace
