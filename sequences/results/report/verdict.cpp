@@ -48,7 +48,7 @@ std::string modelled_ms(const ReportRun& run) {
       formatted("%.3g ms for drawing (reference %.3g ms)", sums.modelled_drawing_ms / sums.frames,
                 sums.modelled_reference_ms / sums.frames);
   if (text_in(run.run, "kind") == "plan") return "modelled " + drawing + " a frame";
-  return formatted("modelled %.3g ms a frame, of it ", sums.modelled_ms / sums.frames) + drawing;
+  return formatted("modelled %.3g ms a frame; as planned, ", sums.modelled_ms / sums.frames) + drawing;
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // What did each frame cost, and how wrong was it? Curves by dygraphs below the map, over the same frames.
 
 const kCurves = {
-  cost: {label: "modelled ms", columns: ["modelled_ms", "modelled_drawing_ms"], names: ["frame", "of it drawing, as planned"]},
+  cost: {label: "modelled ms", columns: ["modelled_ms", "modelled_drawing_ms"], names: ["frame", "drawing, as planned"]},
   polygons: {label: "polygons", columns: ["polygons_rendered", "polygons_reference"], names: ["drawn", "reference"]},
   texels: {label: "texels", columns: ["pixels_rendered", "pixels_reference"], names: ["drawn", "reference"]},
   error: {label: "error px", columns: ["max", "mean_geometric_px"], names: ["largest", "mean"]},
