@@ -40,7 +40,7 @@ std::vector<std::string> parts_in_no_layer(const layers::Scene& scene, const lay
 /// The nearest name, or those whose end is near: "hul" is 'ship/hull'.
 std::string did_you_mean_part(std::string glob, const std::vector<std::string>& parts) {
   std::erase(glob, '*');
-  if (const std::string nearest = did_you_mean(glob, parts); !nearest.empty()) return nearest;
+  if (std::string nearest = did_you_mean(glob, parts); !nearest.empty()) return nearest;
   std::vector<std::string> ends, near;
   const std::string end = glob.substr(glob.rfind('/') + 1);
   const auto end_of = [](const std::string& part) { return part.substr(part.rfind('/') + 1); };
