@@ -155,9 +155,9 @@ TEST(JsonSchema, ADefinitionSaysWhatTheTableSays) {
   EXPECT_EQ(schema["$ref"], "#/$defs/thing");
   const auto& thing = schema["$defs"]["thing"];
   EXPECT_EQ(thing["additionalProperties"], false);
-  EXPECT_EQ(
-      thing["properties"]["size_m"],
-      nlohmann::json::parse(R"({"type": "number", "minimum": 1e-09, "maximum": 1e9, "description": "its size [m]"})"));
+  EXPECT_EQ(thing["properties"]["size_m"],
+            nlohmann::json::parse(
+                R"({"type": "number", "minimum": 1e-09, "maximum": 1e9, "description": "its size [m]"})"));
   EXPECT_EQ(thing["properties"]["share"]["default"], 0.25);
   EXPECT_EQ(thing["properties"]["kind"]["enum"], nlohmann::json::parse(R"(["plain", "striped"])"));
   EXPECT_EQ(thing["properties"]["kind"]["default"], "plain");
