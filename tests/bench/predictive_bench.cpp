@@ -58,22 +58,30 @@ void motion_of_vertices(benchmark::State& state) {
 }
 BENCHMARK(motion_of_vertices)->Arg(8000);
 
+/// The same points, and where they were.
+struct PointsInOpenCv {
+  cv::Mat from, then, matrix = cv::Mat(4, 4, CV_64F);
+
+  explicit PointsInOpenCv(int count) : from(count, 1, CV_64FC3) {
+    const std::vector<layers::dvec3> points = random_points(count);
+    for (int i = 0; i < count; ++i) from.at<cv::Vec3d>(i) = {points[i].x, points[i].y, points[i].z};
+    const layers::dmat4 clip = clip_matrix();
+    for (int row = 0; row < 4; ++row)
+      for (int column = 0; column < 4; ++column) matrix.at<double>(row, column) = clip[column][row];
+    cv::perspectiveTransform(from, then, matrix);
+  }
+};
+
 void motion_of_vertices_opencv(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
-  const std::vector<layers::dvec3> points = random_points(count);
-  const layers::dmat4 clip = clip_matrix();
-  cv::Mat from(count, 1, CV_64FC3), then, now, difference, mask;
-  for (int i = 0; i < count; ++i) from.at<cv::Vec3d>(i) = {points[i].x, points[i].y, points[i].z};
-  cv::Mat matrix(4, 4, CV_64F);
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) matrix.at<double>(row, column) = clip[column][row];
-  cv::perspectiveTransform(from, then, matrix);
+  const PointsInOpenCv points(count);
+  cv::Mat now, difference, mask;
   for (auto _ : state) {
     int beyond = 0;
     for (int first = 0; first + kVertices <= count; first += kVertices) {
       const cv::Range range(first, first + kVertices);
-      cv::perspectiveTransform(from.rowRange(range), now, matrix);
-      cv::absdiff(now, then.rowRange(range), difference);
+      cv::perspectiveTransform(points.from.rowRange(range), now, points.matrix);
+      cv::absdiff(now, points.then.rowRange(range), difference);
       cv::compare(difference.reshape(1), 0.01 / 150, mask, cv::CMP_GT);
       beyond += cv::countNonZero(mask) > 0;
     }
@@ -86,17 +94,11 @@ BENCHMARK(motion_of_vertices_opencv)->Arg(8000);
 /// The same at once: what OpenCV is best at.
 void motion_of_all_vertices_opencv(benchmark::State& state) {
   const int count = static_cast<int>(state.range(0));
-  const std::vector<layers::dvec3> points = random_points(count);
-  const layers::dmat4 clip = clip_matrix();
-  cv::Mat from(count, 1, CV_64FC3), then, now, difference, mask;
-  for (int i = 0; i < count; ++i) from.at<cv::Vec3d>(i) = {points[i].x, points[i].y, points[i].z};
-  cv::Mat matrix(4, 4, CV_64F);
-  for (int row = 0; row < 4; ++row)
-    for (int column = 0; column < 4; ++column) matrix.at<double>(row, column) = clip[column][row];
-  cv::perspectiveTransform(from, then, matrix);
+  const PointsInOpenCv points(count);
+  cv::Mat now, difference, mask;
   for (auto _ : state) {
-    cv::perspectiveTransform(from, now, matrix);
-    cv::absdiff(now, then, difference);
+    cv::perspectiveTransform(points.from, now, points.matrix);
+    cv::absdiff(now, points.then, difference);
     cv::compare(difference.reshape(1), 0.01 / 150, mask, cv::CMP_GT);
     benchmark::DoNotOptimize(cv::countNonZero(mask));
   }
