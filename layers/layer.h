@@ -19,6 +19,7 @@ namespace talisman::layers {
 /// Importance of each kind of fiducial for a layer, relative to other layers. Range ≥ 0, default 1, no unit.
 struct FiducialWeights {
   double geometric = 1, photometric = 1, sampling = 1, visibility = 1;
+  bool operator==(const FiducialWeights&) const = default;
 };
 
 /// Resource-use preferences of a layer [LS97 2.4].
@@ -44,6 +45,7 @@ struct LayerPreferences {
   /// a lower density where a side would exceed max_sprite_px; the density lost counts as magnification.
   bool whole_extents = false;
   std::string warp{};  ///< name of the curve that carries its sprite (warp/warp.h); empty: that of the run
+  bool operator==(const LayerPreferences&) const = default;
 };
 
 /// How far from the view axis whole extents reach.

@@ -2,6 +2,7 @@
 #include "layers/visibility_order.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace talisman::layers {
 
@@ -176,6 +177,29 @@ bool leads_to(std::span<const ExplicitPair> pairs, int from, int to) {
         reached.push_back(p.front);
   }
   return false;
+}
+
+bool have_cycle(std::span<const ExplicitPair> pairs) {
+  std::size_t ids = 0;
+  for (const ExplicitPair& p : pairs)
+    ids = std::max({ids, static_cast<std::size_t>(p.behind) + 1, static_cast<std::size_t>(p.front) + 1});
+  std::vector<std::size_t> first(ids + 1, 0),
+      waits_for(ids, 0);  // those in front of id: first[id] … first[id + 1]
+  for (const ExplicitPair& p : pairs) {
+    ++first[p.behind + 1];
+    ++waits_for[p.front];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<int> in_front(pairs.size());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (const ExplicitPair& p : pairs) in_front[next[p.behind]++] = p.front;
+  std::vector<int> placed;  // each behind all that it has to be behind of
+  for (std::size_t id = 0; id < ids; ++id)
+    if (waits_for[id] == 0) placed.push_back(static_cast<int>(id));
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    for (std::size_t k = first[placed[i]]; k < first[placed[i] + 1]; ++k)
+      if (--waits_for[in_front[k]] == 0) placed.push_back(in_front[k]);
+  return placed.size() < ids;
 }
 
 }  // namespace talisman::layers

@@ -212,11 +212,16 @@ std::string first_defect(const RegulatorOptions& options) {
   if (options.lookahead.frames < 0) return broken("lookahead_frames", options.lookahead.frames, "at least 0");
   if (options.policy == Policy::Predictive)
     if (std::string defect = first_defect(plan_shape(options)); !defect.empty()) return defect;
+  if (std::string defect = first_defect(options.regroup); !defect.empty()) return defect;
   return first_defect(options.budget);
 }
 
 PlanShape plan_shape(const RegulatorOptions& options) {
   return {options.lookahead.frames, options.predictive.children};
+}
+
+bool regroups(const RegulatorOptions& options) {
+  return options.regroup.by == Regroup::Amortised && options.policy == Policy::Threshold;
 }
 
 bool asks_for_light(const RegulatorOptions& options) {

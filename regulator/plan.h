@@ -18,6 +18,7 @@
 
 #include "fiducials/fiducials.h"
 #include "regulator/predictive_options.h"
+#include "regulator/regroup.h"
 
 namespace talisman::regulator {
 
@@ -164,6 +165,7 @@ struct RegulatorOptions {
   LookaheadOptions lookahead;
   BudgetOptions budget;
   PredictiveOptions predictive;
+  RegroupOptions regroup;
   bool operator==(const RegulatorOptions&) const = default;
 };
 
@@ -234,6 +236,9 @@ std::string first_defect(const RegulatorOptions& options);
 
 /// The plan tree of policy Predictive.
 PlanShape plan_shape(const RegulatorOptions& options);
+
+/// Do layers share sprites because it is cheaper: is that asked for, and does the policy know how?
+bool regroups(const RegulatorOptions& options);
 
 /// For how many later frames a sprite is expected to be moved by a warp: 0 where none is (Direct, Reference,
 /// Hold, Predictive, or a threshold of 0 px), N - 1 for Interpolate, `threshold_default` for the rest. Extents grow in

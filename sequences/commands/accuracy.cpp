@@ -7,6 +7,7 @@
 #include "sequences/commands/accuracy_hard.h"
 #include "sequences/commands/accuracy_regulator.h"
 #include "sequences/commands/accuracy_renderer.h"
+#include "sequences/commands/motion/accuracy_amortised.h"
 #include "sequences/commands/motion/accuracy_predictive.h"
 #include "sequences/commands/words.h"
 #include "sequences/experiments/warps/solver_report.h"
@@ -27,28 +28,50 @@ int run_solver_accuracy(const AccuracyOptions& options, std::ostream& out) {
   return kSuccess;
 }
 
-}  // namespace
+/// An experiment on a sequence.
+struct SequenceExperiment {
+  const char* option;
+  std::string AccuracyOptions::*sequence;
+  int (*run)(const ExperimentOptions&, const std::string&, std::ostream&);
+};
+constexpr SequenceExperiment kSequenceExperiments[] = {
+    {"--regulator", &AccuracyOptions::regulator, run_regulator_accuracy},
+    {"--renderer", &AccuracyOptions::renderer, run_renderer_accuracy},
+    {"--factoring", &AccuracyOptions::factoring, run_factoring_accuracy},
+    {"--predictive", &AccuracyOptions::predictive, run_predictive_accuracy},
+    {"--amortised", &AccuracyOptions::amortised, run_amortised_accuracy},
+};
 
-int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
-  const bool regulator = !options.regulator.sequence.empty(), renderer = !options.renderer.empty(),
-             factoring = !options.factoring.empty(), predictive = !options.predictive.empty();
-  const int experiments = options.solvers + options.hard + regulator + renderer + factoring + predictive;
+/// The one experiment that is asked for; null: --solvers or --hard.
+const SequenceExperiment* chosen_experiment(const AccuracyOptions& options) {
+  const SequenceExperiment* chosen = nullptr;
+  int experiments = options.solvers + options.hard;
+  std::string known = "--solvers, --hard";
+  for (const SequenceExperiment& experiment : kSequenceExperiments) {
+    known += std::string(", ") + experiment.option + " SEQUENCE";
+    if ((options.*experiment.sequence).empty()) continue;
+    chosen = &experiment;
+    ++experiments;
+  }
   if (experiments != 1)
     throw InputError(
         "accuracy: " + std::string(experiments == 0 ? "nothing to measure" : "more than one experiment") +
-        ", rule: one of --solvers, --hard, --regulator SEQUENCE, --renderer SEQUENCE, --factoring SEQUENCE, "
-        "--predictive SEQUENCE");
+        ", rule: one of " + known);
+  return chosen;
+}
+
+}  // namespace
+
+int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
+  const SequenceExperiment* experiment = chosen_experiment(options);
   require_plotter();
   if (options.solvers) return run_solver_accuracy(options, out);
   if (options.hard)
     return run_hard_accuracy(options.out, choice("--progress", options.progress, kProgressWords), out);
-  ExperimentOptions asked = options.regulator;
+  ExperimentOptions asked = options.of_sequence;
+  asked.sequence = options.*experiment->sequence;
   asked.progress = options.progress;
-  if (regulator) return run_regulator_accuracy(asked, options.out, out);
-  asked.sequence = renderer ? options.renderer : predictive ? options.predictive : options.factoring;
-  if (predictive) return run_predictive_accuracy(asked, options.out, out);
-  return renderer ? run_renderer_accuracy(asked, options.out, out)
-                  : run_factoring_accuracy(asked, options.out, out);
+  return experiment->run(asked, options.out, out);
 }
 
 }  // namespace talisman::sequences

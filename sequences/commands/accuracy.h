@@ -8,6 +8,7 @@
 ///   --renderer SEQUENCE    of every knob and every effect of the renderer; accuracy_renderer.h
 ///   --factoring SEQUENCE   of shading in sprites of its own; accuracy_factoring.h
 ///   --predictive SEQUENCE  of buffers that parts share by their motion; motion/accuracy_predictive.h
+///   --amortised SEQUENCE   of layers that share sprites while it runs; motion/accuracy_amortised.h
 ///   --hard                 nothing: whether every stage gets right what is hard; accuracy_hard.h
 
 #include <iosfwd>
@@ -18,12 +19,11 @@
 namespace talisman::sequences {
 
 struct AccuracyOptions {
-  bool solvers = false;         ///< exactly one of the experiments must be asked for
-  bool hard = false;            ///< likewise
-  ExperimentOptions regulator;  ///< asked for by its sequence
-  std::string renderer;         ///< sequence, empty: not asked for; the rest is that of `regulator`
-  std::string factoring;        ///< sequence, empty: not asked for; the rest is that of `regulator`
-  std::string predictive;       ///< likewise
+  bool solvers = false;  ///< exactly one of the experiments must be asked for
+  bool hard = false;     ///< likewise
+  // A sequence each; empty: not asked for.
+  std::string regulator, renderer, factoring, predictive, amortised;
+  ExperimentOptions of_sequence;  ///< all but its sequence
   std::string out = "out/accuracy";
   std::string progress = "auto";  ///< auto, bar, plain or none
   /// Boxes per number of points, 1 … 100000; more sharpen the percentiles, cost in proportion.

@@ -272,7 +272,7 @@ void CommandTree::add_accuracy() {
   CLI::App* command = app_.add_subcommand("accuracy", "what accuracy costs in time");
   OptionGroup(*command, "What is measured, one of")
       .flag("--solvers", accuracy_.solvers, "every solver of warps: time, error, stability")
-      .option("--regulator", accuracy_.regulator.sequence,
+      .option("--regulator", accuracy_.regulator,
               "SEQUENCE or MODEL: every policy, cost and time against error and popping; fiducials against "
               "image error")
       .option("--renderer", accuracy_.renderer,
@@ -284,17 +284,21 @@ void CommandTree::add_accuracy() {
       .option("--predictive", accuracy_.predictive,
               "SEQUENCE: buffers that parts share by their motion, beside sprites: cost, bytes and time "
               "against error")
+      .option("--amortised", accuracy_.amortised,
+              "SEQUENCE: layers that share sprites while it runs, beside the author's, one per part and one "
+              "for all")
       .flag("--hard", accuracy_.hard,
             "cases of every stage that a careless one gets wrong, each with its rule; exit code 1 if one is "
             "broken");
   OptionGroup(*command, "Options")
       .option("--inputs", accuracy_.inputs, "solvers: boxes per number of points",
               std::to_string(accuracy_.inputs))
-      .option("--frames", accuracy_.regulator.frames, "regulator, renderer, factoring: A-B, inclusive", "all")
-      .option("--size", accuracy_.regulator.size,
+      .option("--frames", accuracy_.of_sequence.frames, "regulator, renderer, factoring: A-B, inclusive",
+              "all")
+      .option("--size", accuracy_.of_sequence.size,
               "regulator, renderer, factoring: display, WxH (the sequence's, at most " +
                   std::to_string(kLargestDefault_px) + " in either direction)")
-      .option("--quality-every", accuracy_.regulator.quality_every,
+      .option("--quality-every", accuracy_.of_sequence.quality_every,
               "one frame of N is drawn and compared; 0: about 20 (regulator, factoring), 2 (renderer) in all")
       .option("--out", accuracy_.out, "result folder", accuracy_.out)
       .option("--progress", accuracy_.progress, kProgressMeaning, accuracy_.progress);

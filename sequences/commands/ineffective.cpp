@@ -48,7 +48,8 @@ std::vector<Group> groups_of(const CommandLine& line) {
                                {{Interpolate}, {}},
                                {{Interpolate, Threshold, Lookahead, Oracle}, {}},
                                {{Predictive}, {}},
-                               {{Lookahead}, {}}};
+                               {{Lookahead}, {}},
+                               {{Threshold}, {}}};
   Given(groups[0].given)("--hold", line.hold);
   Given(groups[1].given)("--lookahead", line.lookahead);
   Given(groups[2].given)("--budget-polygons", line.budget_polygons)("--budget-pixels", line.budget_pixels)(
@@ -64,6 +65,8 @@ std::vector<Group> groups_of(const CommandLine& line) {
   Given(groups[8].given)("--tree-k", line.tree_k)("--joining", line.joining)("--motion-norm",
                                                                              line.motion_norm);
   Given(groups[9].given)("--predict", line.predict);
+  Given(groups[10].given)("--regroup", line.regroup)("--regroup-prices", line.regroup_prices)(
+      "--regroup-ceiling-ms", line.regroup_ceiling_ms)("--regroup-dwell", line.regroup_dwell);
   return groups;
 }
 

@@ -90,6 +90,14 @@ void apply_thresholds(const CommandLine& line, regulator::RegulatorOptions& opti
   if (!line.color_warp.empty()) options.color_warp = choice("--color-warp", line.color_warp, kSwitchWords);
 }
 
+void apply_regrouping(const CommandLine& line, regulator::RegroupOptions& options) {
+  if (!line.regroup.empty()) options.by = choice("--regroup", line.regroup, kRegroupWords);
+  if (!line.regroup_prices.empty())
+    options.prices = choice("--regroup-prices", line.regroup_prices, kRegroupPricesWords);
+  if (line.regroup_ceiling_ms) options.ceiling_ms = *line.regroup_ceiling_ms;
+  if (line.regroup_dwell) options.dwell_frames = *line.regroup_dwell;
+}
+
 /// What holds only of all options together.
 void require_consistent(const CommandLine& line, const regulator::RegulatorOptions& options) {
   if (options.policy == regulator::Policy::Budget && !regulator::is_limited(options))
@@ -115,6 +123,7 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (!line.joining.empty()) options.predictive.joining = choice("--joining", line.joining, kJoiningWords);
   if (!line.motion_norm.empty())
     options.predictive.norm = choice("--motion-norm", line.motion_norm, kMotionNormWords);
+  apply_regrouping(line, options.regroup);
   apply_limits(line, options);
   apply_prediction(line, options);
   require_consistent(line, options);

@@ -35,6 +35,9 @@ struct CommandLine {
   std::optional<double> photometric, light_angle_deg, turned_px, shadow_map_px, depth_complexity;
   std::string color_warp, stagger, late_chunks;  ///< "on", "off"
   std::string joining, motion_norm;
+  std::string regroup, regroup_prices;
+  std::optional<double> regroup_ceiling_ms;
+  std::optional<int> regroup_dwell;
   std::optional<int> tree_k, samples;
   std::optional<int> hold, blend, lookahead, material_points;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says

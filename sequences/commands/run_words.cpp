@@ -67,6 +67,21 @@ void add_policy(CLI::App& command, CommandLine& line) {
               std::string(word_of(kUsual.predictive.norm, kMotionNormWords)));
 }
 
+void add_regrouping(CLI::App& command, CommandLine& line) {
+  const regulator::RegroupOptions& usual = kUsual.regroup;
+  OptionGroup(command, "Grouping (policy threshold)")
+      .option("--regroup", line.regroup,
+              alternatives(kRegroupWords) + ": neighbours in the order share a sprite while that is cheaper",
+              std::string(word_of(usual.by, kRegroupWords)))
+      .option("--regroup-prices", line.regroup_prices,
+              alternatives(kRegroupPricesWords) + ": what sprites cost, alone and shared",
+              std::string(word_of(usual.prices, kRegroupPricesWords)))
+      .option("--regroup-ceiling-ms", line.regroup_ceiling_ms,
+              "the changes of one frame cost no more at once, modelled ms", "no limit")
+      .option("--regroup-dwell", line.regroup_dwell, "frames for which a changed grouping stays at least",
+              std::to_string(usual.dwell_frames));
+}
+
 void add_thresholds(CLI::App& command, CommandLine& line) {
   const regulator::Thresholds& usual = kUsual.thresholds;
   OptionGroup(command, "Thresholds")
@@ -169,6 +184,7 @@ void add_pictures(CLI::App& command, CommandLine& line) {
 void add_decisions(CLI::App& command, CommandLine& line) {
   add_policy(command, line);
   add_thresholds(command, line);
+  add_regrouping(command, line);
   add_budget(command, line);
   add_layers(command, line);
 }

@@ -86,6 +86,8 @@ inline const auto kJoiningWords = words_of(regulator::kAllJoinings);
 
 inline constexpr Words<regulator::MotionNorm, 2> kMotionNormWords{
     {{"axis", regulator::MotionNorm::Axis}, {"euclid", regulator::MotionNorm::Euclid}}};
+inline const auto kRegroupWords = words_of(regulator::kAllRegroups);
+inline const auto kRegroupPricesWords = words_of(regulator::kAllRegroupPrices);
 inline const auto kChoiceRuleWords = words_of(regulator::kAllChoiceRules);
 
 /// "a, b<last>c".

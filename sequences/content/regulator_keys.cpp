@@ -12,6 +12,7 @@ namespace {
 using regulator::BudgetOptions;
 using regulator::LookaheadOptions;
 using regulator::PredictiveOptions;
+using regulator::RegroupOptions;
 using regulator::RegulatorOptions;
 using regulator::Thresholds;
 using RegulatorKeys = Table<RegulatorOptions>;
@@ -73,6 +74,34 @@ Table<PredictiveOptions> predictive_keys() {
            "laid over, or goes on in it where nothing else needs that")
       .key("motion_norm", &P::norm, motion_norm(), "",
            "policy predictive: geometric_px holds along x and along y, or in any direction");
+}
+
+Format<regulator::Regroup> regroup_by() {
+  using enum regulator::Regroup;
+  return choice<regulator::Regroup>({{"none", None}, {"amortised", Amortised}});
+}
+
+Format<regulator::RegroupPrices> regroup_prices() {
+  using enum regulator::RegroupPrices;
+  return choice<regulator::RegroupPrices>({{"modelled", Modelled}, {"durbin-1995", Durbin1995}});
+}
+
+Table<RegroupOptions> regroup_keys() {
+  using R = RegroupOptions;
+  return Table<R>()
+      .key("regroup", &R::by, regroup_by(), "",
+           "policy threshold: neighbours in the order share a sprite while that is cheaper by their modelled "
+           "cost and "
+           "by how long sprites of theirs have lasted")
+      .key("regroup_prices", &R::prices, regroup_prices(), "",
+           "modelled as everything else, or 12.7 µs apart, 3.8 µs together and 87.9 µs once for each polygon")
+      .key("regroup_ceiling_ms", &R::ceiling_ms, number(kNotNegative), "ms",
+           "the changes of one frame cost no more at once")
+      .otherwise("no limit")
+      .key("regroup_dwell", &R::dwell_frames, whole(1, kLongestRun_frames), "frames",
+           "layers that were merged or split stay so for at least so long")
+      .key("regroup_recency", &R::recency, number({kLeast, 1}), "",
+           "weight of the last life of a sprite in how long the next is expected to last");
 }
 
 Table<BudgetOptions> budget_keys() {
@@ -156,7 +185,8 @@ const Table<RegulatorOptions>& regulator_keys() {
                "Multipliers only darken; light that grows is drawn again")
           .include(&R::lookahead, lookahead_keys())
           .include(&R::budget, budget_keys())
-          .include(&R::predictive, predictive_keys());
+          .include(&R::predictive, predictive_keys())
+          .include(&R::regroup, regroup_keys());
   return table;
 }
 

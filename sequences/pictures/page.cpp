@@ -15,7 +15,7 @@
 namespace talisman::sequences {
 namespace {
 
-bool is_text_column(const Table& table, std::size_t column) {
+bool is_text_column(const PageTable& table, std::size_t column) {
   return static_cast<int>(column) < table.text_columns;
 }
 
@@ -35,7 +35,7 @@ std::string markdown_row(const std::vector<std::string>& cells) {
 struct MarkdownWriter {
   std::string operator()(const Heading& h) const { return std::string(h.level, '#') + " " + h.text + "\n"; }
   std::string operator()(const Paragraph& p) const { return p.text + "\n"; }
-  std::string operator()(const Table& table) const {
+  std::string operator()(const PageTable& table) const {
     std::string text = markdown_row(table.header) + "|";
     for (std::size_t k = 0; k < table.header.size(); ++k) text += is_text_column(table, k) ? "---|" : "---:|";
     text += "\n";
@@ -80,7 +80,7 @@ struct HtmlWriter {
     return "<h2 id=\"" + id + "\">" + escaped(h.text) + "</h2>\n";
   }
   std::string operator()(const Paragraph& p) const { return "<p>" + escaped(p.text) + "</p>\n"; }
-  std::string operator()(const Table& table) {
+  std::string operator()(const PageTable& table) {
     std::vector<std::vector<std::string>> rows;
     for (const auto& cells : table.rows) {
       TALISMAN_CHECK_EQ(cells.size(), table.header.size());
@@ -112,7 +112,7 @@ std::size_t columns_of(const std::string& text) {
 
 }  // namespace
 
-std::string plain_text(const Table& table) {
+std::string plain_text(const PageTable& table) {
   std::vector<std::size_t> widths(table.header.size(), 0);
   std::vector<std::vector<std::string>> rows{table.header};
   rows.insert(rows.end(), table.rows.begin(), table.rows.end());

@@ -21,7 +21,7 @@ struct Paragraph {
   std::string text;
 };
 /// Every row has as many cells as the header. Columns after the first `text_columns` are right-aligned.
-struct Table {
+struct PageTable {
   std::vector<std::string> header;
   std::vector<std::vector<std::string>> rows;
   int text_columns = 1;
@@ -30,7 +30,7 @@ struct Table {
 struct Figure {
   std::string file, caption;
 };
-using Block = std::variant<Heading, Paragraph, Table, Figure>;
+using Block = std::variant<Heading, Paragraph, PageTable, Figure>;
 
 struct Page {
   std::string title;
@@ -38,7 +38,7 @@ struct Page {
 };
 
 /// The table in columns for a terminal. UTF-8 aware: one column per code point.
-std::string plain_text(const Table& table);
+std::string plain_text(const PageTable& table);
 
 /// Figures are references to their files, which lie beside the page.
 std::string markdown(const Page& page);

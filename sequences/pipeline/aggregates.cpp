@@ -14,6 +14,7 @@
 #include "layers/shading.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_planning.h"
+#include "sequences/pipeline/regrouping/shared_entries.h"
 #include "sequences/pipeline/resolved_cycles.h"
 #include "sequences/pipeline/stopwatch.h"
 
@@ -232,19 +233,33 @@ void take_from_merged(const MergedComponent& component, layers::VisibilityCounte
   counters.merged_layers -= static_cast<int>(component.layers.size());
 }
 
+/// Puts the aggregate of these layers next in the order.
+void place_merged(const Pipeline& pipeline, Growth& growth, const Members& members, std::string why,
+                  FrameOrder& order) {
+  const int id = growth.id_of(members);
+  order.back_to_front.push_back(id);
+  order.mergers.push_back({id, std::move(why)});
+  for (const int member : members) {
+    order.merged_into[member] = id;
+    order.merged_parts += static_cast<int>(pipeline.authored[member].parts.size());
+  }
+}
+
 /// Turns the sorter's answer into layers with sprites: a component becomes its aggregate, or stays apart with
-/// an expression or in some order.
+/// an expression or in some order; what is cheaper together becomes an aggregate as well.
 void place_groups(const Pipeline& pipeline, PipelineState& state, const std::vector<LayerState>& states,
                   const layers::dvec3& eye, const layers::VisibilityOrder& visibility, FrameOrder& order) {
-  auto merged = visibility.merged.begin();
   Growth growth(pipeline, state);
-  for (const std::vector<int>& group : visibility.groups_back_to_front) {
-    if (group.size() == 1) {
-      order.back_to_front.push_back(group.front());
+  for (const OrderEntry& entry : order_entries(pipeline, visibility, state)) {
+    if (entry.why_shared != nullptr) {
+      place_merged(pipeline, growth, entry.layers, *entry.why_shared, order);
       continue;
     }
-    TALISMAN_CHECK(merged != visibility.merged.end() && merged->layers == group);
-    const MergedComponent& component = *merged++;
+    if (entry.cycle == nullptr) {
+      order.back_to_front.push_back(entry.layers.front());
+      continue;
+    }
+    const MergedComponent& component = *entry.cycle;
     Resolution resolution = resolve_cycle(pipeline, state.order.merged_into, component);
     if (resolution.cycle || pipeline.settings.cycles == Cycles::Keep) {
       const std::vector<int> kept = order_of_cycle(component, eye, states);
@@ -254,14 +269,8 @@ void place_groups(const Pipeline& pipeline, PipelineState& state, const std::vec
       order.resolved.push_back(std::move(*resolution.cycle));
       continue;
     }
-    const int id = growth.id_of(group);
-    order.back_to_front.push_back(id);
     const std::string why_not = resolution.why_not.empty() ? "" : "; " + resolution.why_not;
-    order.mergers.push_back({id, why_merged(pipeline.authored, component) + why_not});
-    for (const int member : group) {
-      order.merged_into[member] = id;
-      order.merged_parts += static_cast<int>(pipeline.authored[member].parts.size());
-    }
+    place_merged(pipeline, growth, entry.layers, why_merged(pipeline.authored, component) + why_not, order);
   }
   growth.finish();
 }
@@ -350,6 +359,8 @@ FrameOrder order_layers(const Pipeline& pipeline, PipelineState& state, int fram
   }
   add_shade_layers(pipeline, state, order);
   note_splits(state.order.merged_into, order);
+  order.why_split = std::move(state.regroup.why_split);
+  state.regroup.why_split.clear();
   remember_order(pipeline, state, frame, order);
   order.sort_ms = watch.ms();
   return order;
@@ -380,6 +391,16 @@ std::vector<int> layers_with_lines(const PipelineState& state, const FrameReport
   return layers;
 }
 
+namespace {
+
+/// " (cheaper apart: …)", or empty.
+std::string why_split(const FrameOrder& order, int layer) {
+  const auto why = order.why_split.find(layer);
+  return why != order.why_split.end() ? " (" + why->second + ")" : "";
+}
+
+}  // namespace
+
 void explain_order(FrameReport& report) {
   for (regulator::LayerDecision& decision : report.plan.decisions) {
     const Layer& layer = report.layers[decision.layer];
@@ -394,7 +415,8 @@ void explain_order(FrameReport& report) {
     if (into >= 0)
       decision.reason = "merged into " + report.layers[into].name + ": " + report.order.merger(into)->why;
     else if (from >= 0 && decision.action != regulator::Action::Drop)
-      decision.reason = "split from " + report.layers[from].name + ": " + decision.reason;
+      decision.reason = "split from " + report.layers[from].name + why_split(report.order, layer.id) + ": " +
+                        decision.reason;
     if (const ResolvedCycle* cycle = report.order.resolved_with(layer.id))
       decision.reason += "; " + why_resolved(report.layers, *cycle, layer.id);
   }

@@ -4,6 +4,7 @@
 /// In which order are the sprites of one frame composited, and which layers share one? The data; how it comes
 /// about is in sequences/pipeline/aggregates.h.
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,8 +27,9 @@ enum class Compositor {
 
 /// An aggregate that exists in this frame.
 struct Merger {
-  int layer = -1;   ///< its id
-  std::string why;  ///< "a, b occlude each other", "a, b, c occlude each other in a cycle", …
+  int layer = -1;  ///< its id
+  /// "a, b occlude each other", "a, b, c occlude each other in a cycle", "cheaper together: …"
+  std::string why;
 };
 
 /// Layers that have no order but a compositing expression, and keep their own sprites.
@@ -50,7 +52,8 @@ struct FrameOrder {
   std::vector<int> back_to_front;  ///< ids of all layers with a sprite of their own: in view and not merged
   std::vector<int> merged_into;    ///< by layer id: the aggregate that draws it in this frame, -1: none
   std::vector<int> split_from;     ///< by layer id: the aggregate that drew it until the last frame, -1: none
-  std::vector<Merger> mergers;     ///< in the order in which they are composited
+  std::map<int, std::string> why_split;  ///< by id of such a layer, where it was the regulator's choice
+  std::vector<Merger> mergers;           ///< in the order in which they are composited
   /// In the order in which they are composited. Their layers are side by side in back_to_front.
   std::vector<ResolvedCycle> resolved;
   bool sorted = false;                  ///< false: the groups alone gave the order, and nothing was computed

@@ -18,6 +18,7 @@
 #include "sequences/pipeline/frame_order.h"
 #include "sequences/pipeline/layer_table.h"
 #include "sequences/pipeline/order_memory.h"
+#include "sequences/pipeline/regrouping/regroup_memory.h"
 #include "sequences/pipeline/shade_memory.h"
 #include "sequences/pipeline/sprite_compression.h"
 #include "warp/fit.h"
@@ -134,6 +135,7 @@ struct PipelineState {
   chunker::SpriteStore fading_sprites;  ///< of them, those that are drawn
   CompressedSprites compressed;         ///< empty unless Settings::compression asks for it
   OrderMemory order;
+  RegroupMemory regroup;              ///< empty unless the regulator regroups
   std::optional<BeatMemory> beat;     ///< empty unless the policy keeps one
   std::vector<ShadowMapMemory> maps;  ///< by light; empty where no shadow is called for
   ShadePlan reference_shades;         ///< of the policy `reference`: the yardstick of what is saved

@@ -19,6 +19,7 @@
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_beside.h"
 #include "sequences/pipeline/predictive/plan_buffers.h"
+#include "sequences/pipeline/regrouping/regroup.h"
 #include "sequences/pipeline/shade_passes.h"
 #include "sequences/pipeline/shadow_map_planning.h"
 #include "sequences/pipeline/stopwatch.h"
@@ -423,6 +424,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
     remember_predicted(pipeline, state, maps, report);
   else
     remember_renders(pipeline, state, maps, report);
+  if (regulator::regroups(options)) regroup(pipeline, state, report);
   const Fades fades = carry_fades(pipeline, state, report);
   explain_order(report);
   report.shown = sprites_shown(pipeline, state, fades, report);

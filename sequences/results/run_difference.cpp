@@ -131,16 +131,16 @@ std::string number_or_dash(const std::optional<double>& value, const char* patte
   return value ? number_text(pattern, *value) : "-";
 }
 
-Table costs_table(const RunDifference& difference) {
-  Table table{{"cost", "A", "B", "B of A %"}, {}, 1};
+PageTable costs_table(const RunDifference& difference) {
+  PageTable table{{"cost", "A", "B", "B of A %"}, {}, 1};
   for (const CostDifference& cost : difference.costs)
     table.rows.push_back({cost.name, number_or_dash(cost.a, "%.6g"), number_or_dash(cost.b, "%.6g"),
                           cost.a && cost.b ? percent_of(*cost.b, *cost.a) : "-"});
   return table;
 }
 
-Table layers_table(const RunDifference& difference) {
-  Table table{{"layer", "renders A", "renders B", "rate A %", "rate B %", "decided otherwise"}, {}, 1};
+PageTable layers_table(const RunDifference& difference) {
+  PageTable table{{"layer", "renders A", "renders B", "rate A %", "rate B %", "decided otherwise"}, {}, 1};
   const auto percent = [](const std::optional<double>& rate) { return rate ? fixed(100 * *rate, 1) : "-"; };
   for (const LayerRates& layer : difference.layers)
     table.rows.push_back({layer.layer, number_or_dash(layer.renders_a, "%.0f"),
@@ -151,7 +151,7 @@ Table layers_table(const RunDifference& difference) {
 
 std::string settings_text(const RunDifference& difference) {
   if (difference.settings.empty()) return "settings and content are the same\n";
-  Table table{{"setting", "A", "B"}, {}, 3};
+  PageTable table{{"setting", "A", "B"}, {}, 3};
   for (const SettingDifference& setting : difference.settings)
     table.rows.push_back({setting.name, setting.a, setting.b});
   return plain_text(table);
@@ -189,7 +189,7 @@ std::string text_of(const RunDifference& difference, std::size_t most_decisions)
                      " of " + std::to_string(difference.decisions) + " decisions of " +
                      std::to_string(difference.frames) + " frames differ\n";
   if (difference.decided.empty()) return text;
-  Table table{{"frame", "layer", "A", "B"}, {}, 4};
+  PageTable table{{"frame", "layer", "A", "B"}, {}, 4};
   const std::size_t shown = std::min(most_decisions, difference.decided.size());
   for (std::size_t k = 0; k < shown; ++k) {
     const DecisionDifference& decision = difference.decided[k];

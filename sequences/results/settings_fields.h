@@ -45,7 +45,7 @@ void budget(Budget& b, const Visit& visit) {
 template <typename Options, typename Visit>
 void regulator(Options& options, const Visit& visit) {
   auto& [policy, hold_frames, stagger, blend_frames, color_warp, settle_frames, of_thresholds, lookahead,
-         of_budget, predictive] = options;
+         of_budget, predictive, of_regroup] = options;
   visit("policy", policy);
   visit("hold_frames", hold_frames);
   visit("stagger", stagger);
@@ -61,6 +61,12 @@ void regulator(Options& options, const Visit& visit) {
   visit("tree_k", children);
   visit("joining", joining);
   visit("motion_norm", norm);
+  auto& [by, prices, ceiling, dwell, recency] = of_regroup;
+  visit("regroup", by);
+  visit("regroup_prices", prices);
+  visit("regroup_ceiling_ms", ceiling);
+  visit("regroup_dwell", dwell);
+  visit("regroup_recency", recency);
 }
 
 template <typename FitOptions, typename Visit>

@@ -93,6 +93,7 @@ class Study {
   }
 
   FactoringStudy run() {
+    if (options_.way == FactoringWay::Amortised) return one_for_each_part();
     const bool by_node = options_.way == FactoringWay::Node;
     if (pieces_.free > 1 && pieces_.free <= kMostFactoredPieces && (!by_node || too_many_nodes())) look();
     if (data_) behind_ = pieces_behind(scene_.scene, pieces_, data_->depths);
@@ -115,7 +116,23 @@ class Study {
     DepthSamples depths;
   };
 
-  bool too_many_nodes() const { return nodes_.size() > static_cast<std::size_t>(options_.max); }
+  /// What pays is found while it runs; all that is looked at is the order where the bounds know none.
+  FactoringStudy one_for_each_part() {
+    FactoringStudy result;
+    if (pieces_.free > 1 && pieces_.free <= kMostFactoredPieces) {
+      look();
+      result.chosen = in_order({alone(), false, false}).factoring;
+      result.instants = instants_;
+    } else {
+      result.chosen = factoring_of("amortised", alone());
+      result.chosen.set = layers::factor(scene_.scene, result.chosen.specs);
+    }
+    result.chosen.how = "amortised";
+    result.pieces = std::move(pieces_);
+    return result;
+  }
+
+  bool too_many_nodes() const { return nodes_.size() > static_cast<std::size_t>(options_.limit()); }
 
   void look() {
     data_.emplace(Data{{scene_.scene, pieces_.layers, scene_.settings, instants_},
@@ -157,12 +174,12 @@ class Study {
   }
 
   /// Nodes as pieces, joined where there are too many.
-  Groups limited_nodes() const { return grouped(data(), {options_.max, true}, nodes_); }
+  Groups limited_nodes() const { return grouped(data(), {options_.limit(), true}, nodes_); }
 
   /// Of nodes that are too many to look at: the largest, and one layer for the rest.
   Groups largest_nodes() const {
     Groups groups = nodes_;
-    const auto most = static_cast<std::size_t>(options_.max);
+    const auto most = static_cast<std::size_t>(options_.limit());
     if (groups.size() <= most) return groups;
     const auto polygons = [&](const std::vector<int>& group) {
       int sum = 0;
@@ -270,7 +287,7 @@ class Study {
       look_at({{split_where_cheaper(*best, bodies), best->has_background, false}}, all);
       if (all.size() == before) break;
     }
-    if (nodes_.size() <= static_cast<std::size_t>(options_.max)) all.push_back(as_one_of("node", nodes_));
+    if (nodes_.size() <= static_cast<std::size_t>(options_.limit())) all.push_back(as_one_of("node", nodes_));
     all.push_back(as_one_of("one", {everything()}));
     return all;
   }
@@ -286,9 +303,9 @@ class Study {
     tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
       const bool is_cut = i >= at_first.size();
       const Groups& start = is_cut ? cut[i - at_first.size()] : at_first[i];
-      found[i] = {grouped(data(is_cut), {options_.max, false}, start), is_cut, true};
+      found[i] = {grouped(data(is_cut), {options_.limit(), false}, start), is_cut, true};
     });
-    const auto most = static_cast<std::size_t>(options_.max);
+    const auto most = static_cast<std::size_t>(options_.limit());
     std::erase_if(found, [&](const Candidate& c) {  // both sides may be too many
       return c.has_background && c.groups.size() > most;
     });
@@ -370,7 +387,7 @@ class Study {
       double parts_ms = 0;
       for (; end < looked_at.size() && owner[end] == i; ++end) parts_ms += plans[end].work_ms();
       const bool is_split = end > i + 1 && parts_ms < plans[i].work_ms() &&
-                            groups.size() + (end - i - 1) <= static_cast<std::size_t>(options_.max);
+                            groups.size() + (end - i - 1) <= static_cast<std::size_t>(options_.limit());
       if (is_split)
         groups.insert(groups.end(), looked_at.begin() + static_cast<std::ptrdiff_t>(i) + 1,
                       looked_at.begin() + static_cast<std::ptrdiff_t>(end));
@@ -378,7 +395,7 @@ class Study {
         groups.push_back(looked_at[i]);
       i = end;
     }
-    return groups.size() <= static_cast<std::size_t>(options_.max)
+    return groups.size() <= static_cast<std::size_t>(options_.limit())
                ? groups
                : Groups(f.pieces.begin() + static_cast<std::ptrdiff_t>(first), f.pieces.end());
   }

@@ -8,10 +8,12 @@
 ///   velocity   parts that move alike on the display and lie together are one layer (grouping.h), in the order in which
 ///              they were seen (seen_order.h). What comes out is planned, as are one layer per node and one for all, and
 ///              the cheapest is taken: no proposal costs more than either.
+///   amortised  a layer for each part, that share sprites while it runs (sequences/pipeline/regrouping/regroup.h)
 ///
 /// Another way is a value of FactoringWay, its word in factoring_keys.cpp, and a function from Pieces to groups in
 /// `factored`.
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,14 +22,17 @@
 
 namespace talisman::sequences {
 
-enum class FactoringWay { Node, Velocity };
+enum class FactoringWay { Node, Velocity, Amortised };
 
 inline constexpr int kMostLayersByDefault = 40;
 inline constexpr int kMostLayers = 1000;
 
 struct AutoLayers {
   FactoringWay way = FactoringWay::Velocity;
-  int max = kMostLayersByDefault;  ///< 1 … kMostLayers
+  std::optional<int> max{};  ///< 1 … kMostLayers; empty: kMostLayersByDefault, Amortised: kMostLayers
+  int limit() const {
+    return max.value_or(way == FactoringWay::Amortised ? kMostLayers : kMostLayersByDefault);
+  }
   bool operator==(const AutoLayers&) const = default;
 };
 
@@ -43,7 +48,7 @@ struct Unfactored {
 };
 
 struct Factoring {
-  std::string how;                       ///< "velocity", "node", "one": of which the layers are
+  std::string how;                       ///< "velocity", "node", "one", "amortised": of which the layers are
   std::vector<layers::LayerSpec> specs;  ///< those that were kept first
   layers::LayerSet set;                  ///< what layers::factor makes of them
   std::vector<std::vector<int>> pieces;  ///< by spec: what each has

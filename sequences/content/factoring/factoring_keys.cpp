@@ -7,13 +7,19 @@ const Table<AutoLayers>& auto_layers_keys() {
   static const Table<AutoLayers> table =
       Table<AutoLayers>("auto")
           .key("auto", &AutoLayers::way,
-               choice<FactoringWay>({{"node", FactoringWay::Node}, {"velocity", FactoringWay::Velocity}}), "",
+               choice<FactoringWay>({{"node", FactoringWay::Node},
+                                     {"velocity", FactoringWay::Velocity},
+                                     {"amortised", FactoringWay::Amortised}}),
+               "",
                "`node`: one per moving node, or per top-level node where nothing moves; `velocity`: parts "
                "that move "
-               "alike on the display and lie together, never dearer than `node`")
+               "alike on the display and lie together, never dearer than `node`; `amortised`: one for each "
+               "part, with "
+               "`regroup: amortised`")
           .required()
           .key("max", &AutoLayers::max, whole(1, kMostLayers), "layers",
-               "no more than so many are made; those that a model's author named are not counted");
+               "no more than so many are made; those that a model's author named are not counted")
+          .otherwise("40; `amortised`: 1000");
   return table;
 }
 

@@ -48,11 +48,11 @@ constexpr NamedValue<Compared> kCompared[] = {
 
 std::string psnr_text(double psnr_db) { return std::isfinite(psnr_db) ? fixed(psnr_db, 2) : "identical"; }
 
-Table comparison_table(const ComparisonReport& report) {
-  Table table{{"setting", "rate %", "polygons %", "pixels %", "model ms", "worst ms", "PSNR dB", "worst dB",
-               "FLIP", "worst", "popping", "wall ms"},
-              {},
-              1};
+PageTable comparison_table(const ComparisonReport& report) {
+  PageTable table{{"setting", "rate %", "polygons %", "pixels %", "model ms", "worst ms", "PSNR dB",
+                   "worst dB", "FLIP", "worst", "popping", "wall ms"},
+                  {},
+                  1};
   const SettingResult& reference = report.compared.front().result;
   for (const Compared& c : report.compared)
     table.rows.push_back({c.name, fixed(100 * c.result.mean_update_rate, 1),

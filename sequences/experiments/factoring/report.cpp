@@ -96,11 +96,11 @@ std::string rms_and_max(const ErrorSum& sum) {
   return percent_with(sum.rms(), 4) + " / " + percent_with(sum.largest, 2);
 }
 
-Table prediction_table(const FactoringReport& report) {
-  Table table{{"factored alone", "shades", "by formula", "predicted", "measured", "unexplained", "elsewhere",
-               "bound", "of it %", "beyond"},
-              {},
-              1};
+PageTable prediction_table(const FactoringReport& report) {
+  PageTable table{{"factored alone", "shades", "by formula", "predicted", "measured", "unexplained",
+                   "elsewhere", "bound", "of it %", "beyond"},
+                  {},
+                  1};
   for (const FactoredLayer& layer : layers_and_frame(report)) {
     const PredictionCheck& c = layer.check;
     table.rows.push_back({layer.name, std::to_string(layer.shade_layers), rms_and_max(c.by_formula),
@@ -111,8 +111,8 @@ Table prediction_table(const FactoringReport& report) {
   return table;
 }
 
-Table loss_table(const FactoringReport& report) {
-  Table table{{"picture", "RMS", "max", "PSNR dB", "SSIM", "FLIP", "pixels changed %"}, {}, 1};
+PageTable loss_table(const FactoringReport& report) {
+  PageTable table{{"picture", "RMS", "max", "PSNR dB", "SSIM", "FLIP", "pixels changed %"}, {}, 1};
   for (const PictureLoss& loss : report.result.losses) {
     const DiffSummary s = summarize(loss.frames);
     table.rows.push_back({name(loss.picture), fixed(rms_code_values(s.mean.psnr_db), 3),
@@ -123,11 +123,11 @@ Table loss_table(const FactoringReport& report) {
   return table;
 }
 
-Table cost_table(const FactoringReport& report) {
-  Table table{{"sequence", "rate %", "renders", "polygons", "pixels", "chunks", "plan ms", "render ms",
-               "composite ms", "modelled ms"},
-              {},
-              1};
+PageTable cost_table(const FactoringReport& report) {
+  PageTable table{{"sequence", "rate %", "renders", "polygons", "pixels", "chunks", "plan ms", "render ms",
+                   "composite ms", "modelled ms"},
+                  {},
+                  1};
   const auto row = [&](const char* name, const SettingResult& r) {
     table.rows.push_back({name, percent_with(r.mean_update_rate, 1), std::to_string(r.renders),
                           std::to_string(r.polygons), std::to_string(r.pixels), std::to_string(r.chunks),

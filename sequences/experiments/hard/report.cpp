@@ -24,8 +24,8 @@ std::string rule_text(const HardRule& rule) {
   return (rule.most == 0 ? "0 " : "<= " + short_number(rule.most) + " ") + std::string(rule.unit);
 }
 
-Table table_of_stage(const HardReport& report, HardStage stage) {
-  Table table{{"case", "what is special", "rule", "oracle", "worst error", "status"}, {}, 4};
+PageTable table_of_stage(const HardReport& report, HardStage stage) {
+  PageTable table{{"case", "what is special", "rule", "oracle", "worst error", "status"}, {}, 4};
   for (const MeasuredHardCase& m : report.cases)
     if (m.hard.stage == stage)
       table.rows.push_back({std::string(m.hard.name), std::string(m.hard.special), rule_text(m.hard.rule),

@@ -108,10 +108,10 @@ void write_report(const PredictiveExperiment& experiment, const std::string& dir
 }
 
 void print_report(const PredictiveExperiment& experiment, std::ostream& out) {
-  Table table{{"setting", "draws", "of", "polygons %", "joined px", "MB held", "largest px", "PSNR dB",
-               "FLIP", "pop", "modelled ms", "joining ms", "plan ms", "draw ms", "composite ms"},
-              {},
-              1};
+  PageTable table{{"setting", "draws", "of", "polygons %", "joined px", "MB held", "largest px", "PSNR dB",
+                   "FLIP", "pop", "modelled ms", "joining ms", "plan ms", "draw ms", "composite ms"},
+                  {},
+                  1};
   for (const PredictiveResult& r : experiment.results)
     table.rows.push_back({r.setting.name, std::to_string(r.draws), std::to_string(r.shown),
                           percent_of(double(r.polygons), double(r.polygons_reference)),

@@ -101,11 +101,11 @@ Json calibration_json(const RegulatorReport& report) {
 
 // --- Tables
 
-Table cost_table(const RegulatorReport& report) {
-  Table table{{"policy", "knob", "rate %", "weighted %", "polygons %", "pixels %", "chunks %", "plan ms",
-               "render ms", "composite ms", "median ms", "modelled ms"},
-              {},
-              2};
+PageTable cost_table(const RegulatorReport& report) {
+  PageTable table{{"policy", "knob", "rate %", "weighted %", "polygons %", "pixels %", "chunks %", "plan ms",
+                   "render ms", "composite ms", "median ms", "modelled ms"},
+                  {},
+                  2};
   const SettingResult& reference = report.settings.front();
   for (const SettingResult& r : report.settings)
     table.rows.push_back(
@@ -118,11 +118,11 @@ Table cost_table(const RegulatorReport& report) {
   return table;
 }
 
-Table error_table(const RegulatorReport& report) {
-  Table table{{"policy", "knob", "mean px", "max px", "PSNR dB", "SSIM", "FLIP", "popping", "p95",
-               "elsewhere", "steps %", "front"},
-              {},
-              2};
+PageTable error_table(const RegulatorReport& report) {
+  PageTable table{{"policy", "knob", "mean px", "max px", "PSNR dB", "SSIM", "FLIP", "popping", "p95",
+                   "elsewhere", "steps %", "front"},
+                  {},
+                  2};
   const std::vector<bool> front = polygon_front(report);
   for (std::size_t k = 0; k < report.settings.size(); ++k) {
     const SettingResult& r = report.settings[k];
@@ -135,8 +135,8 @@ Table error_table(const RegulatorReport& report) {
   return table;
 }
 
-Table lookahead_table(const LookaheadCurve& curve) {
-  Table table{
+PageTable lookahead_table(const LookaheadCurve& curve) {
+  PageTable table{
       {"motion", "N", "renders", "of threshold %", "over oracle %", "rate %", "max px", "plan us"}, {}, 1};
   const auto row = [&](const std::string& name, const std::string& n, std::int64_t renders, double rate,
                        const std::string& max_px, const std::string& plan_us) {
@@ -155,8 +155,8 @@ Table lookahead_table(const LookaheadCurve& curve) {
 
 std::string rho_text(const RankCorrelation& rank) { return rank.defined ? fixed(rank.rho, 3) : "-"; }
 
-Table calibration_table(const std::vector<CalibrationSummary>& calibration) {
-  Table table{{"fiducial", "n", "rho", "rho in a layer", "layers", "rho of shift"}, {}, 1};
+PageTable calibration_table(const std::vector<CalibrationSummary>& calibration) {
+  PageTable table{{"fiducial", "n", "rho", "rho in a layer", "layers", "rho of shift"}, {}, 1};
   for (const CalibrationSummary& c : calibration)
     table.rows.push_back({c.fiducial->name, std::to_string(c.computed), rho_text(c.error),
                           c.layers > 0 ? fixed(c.median_rho_of_layers, 3) : "-", std::to_string(c.layers),

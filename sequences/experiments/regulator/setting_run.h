@@ -39,6 +39,9 @@ class SettingRun {
   /// Of the last judge.
   const Quality& quality() const { return qualities_.back().quality; }
   SettingResult result() const;
+  /// Of the last advance.
+  const FrameReport& report() const { return report_; }
+  const PipelineState& state() const { return state_; }
   /// Of the frames that were counted, as a run of its own would have it.
   const Summary& summary() const { return summary_; }
   /// Of each frame that was judged.

@@ -141,11 +141,11 @@ std::string count(double value) {
 
 std::string kib(double bytes) { return count(bytes / 1024); }
 
-Table knob_table(const KnobResults& results) {
-  Table table{{"knob", "rung", "paid in", "work", "PSNR dB", "FLIP", "max", "RMS", "alone dB", "FLIP",
-               "render ms", "composite", "cpu ms", "+-", "modelled", "dB/ms", "mFLIP/ms", "front"},
-              {},
-              3};
+PageTable knob_table(const KnobResults& results) {
+  PageTable table{{"knob", "rung", "paid in", "work", "PSNR dB", "FLIP", "max", "RMS", "alone dB", "FLIP",
+                   "render ms", "composite", "cpu ms", "+-", "modelled", "dB/ms", "mFLIP/ms", "front"},
+                  {},
+                  3};
   for (const RungResult& r : results.rungs) {
     const Knob& knob = results.ladder.knobs[r.knob];
     const Measured& m = results.measured[r.variant];
@@ -162,8 +162,8 @@ Table knob_table(const KnobResults& results) {
   return table;
 }
 
-Table not_called_table(const RendererReport& report) {
-  Table table{{"not called for", "why"}, {}, 2};
+PageTable not_called_table(const RendererReport& report) {
+  PageTable table{{"not called for", "why"}, {}, 2};
   for (const Knob& knob : report.knobs.ladder.knobs)
     if (!knob.called()) table.rows.push_back({"knob " + knob.name, knob.why_not});
   for (const layers::EffectCall& call : report.effects.not_called)
@@ -171,11 +171,11 @@ Table not_called_table(const RendererReport& report) {
   return table;
 }
 
-Table effect_table(const EffectResults& effects) {
-  Table table{{"effect", "PSNR dB", "SSIM", "FLIP", "max", "ms", "+-", "cpu ms", "+-", "% of all", "modelled",
-               "KiB", "shadow maps", "mirrors", "pixels shaded", "samples", "look-ups"},
-              {},
-              1};
+PageTable effect_table(const EffectResults& effects) {
+  PageTable table{{"effect", "PSNR dB", "SSIM", "FLIP", "max", "ms", "+-", "cpu ms", "+-", "% of all",
+                   "modelled", "KiB", "shadow maps", "mirrors", "pixels shaded", "samples", "look-ups"},
+                  {},
+                  1};
   const Measured& with = effects.frames[0];
   for (const EffectResult& effect : effects.pictures) {
     const Measured& without = effects.frames[effect.without];
@@ -217,11 +217,11 @@ std::vector<std::string> run_row(const std::string& what, const Measured& m, con
           std::to_string(error.quality.max_difference)};
 }
 
-Table run_table(const EffectResults& effects) {
-  Table table{{"per frame", "renders", "polygons", "pixels", "plan ms", "render ms", "composite", "cpu ms",
-               "+-", "modelled", "KiB", "PSNR dB", "SSIM", "FLIP", "max"},
-              {},
-              1};
+PageTable run_table(const EffectResults& effects) {
+  PageTable table{{"per frame", "renders", "polygons", "pixels", "plan ms", "render ms", "composite",
+                   "cpu ms", "+-", "modelled", "KiB", "PSNR dB", "SSIM", "FLIP", "max"},
+                  {},
+                  1};
   table.rows.push_back(run_row("as it is", effects.runs[0], effects.run_error));
   for (const EffectResult& effect : effects.over_time)
     table.rows.push_back(run_row("without " + std::string(layers::name(effect.call.effect)),
@@ -311,7 +311,7 @@ void print_report(const RendererReport& report, std::ostream& out) {
     out << "\neffects over time: frames " << run.frames.front() << "-" << run.frames.back() << ", policy "
         << report.policy << ", " << run.compared.size() << " of them compared with their direct\n"
         << plain_text(run_table(report.effects));
-  const Table not_called = not_called_table(report);
+  const PageTable not_called = not_called_table(report);
   if (!not_called.rows.empty()) out << "\n" << plain_text(not_called);
 }
 

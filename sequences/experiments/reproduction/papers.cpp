@@ -5,6 +5,7 @@
 #include <set>
 
 #include "sequences/experiments/reproduction/barnyard_pictures.h"
+#include "sequences/experiments/reproduction/durbin/amortised_95.h"
 #include "sequences/experiments/reproduction/fearing/operations.h"
 #include "sequences/experiments/reproduction/fearing/skipped.h"
 #include "sequences/experiments/reproduction/figure_21.h"
@@ -34,6 +35,13 @@ Paper fearing_1996() {
           {operation_counts_96(), skipped_polygons_96()}};
 }
 
+Paper durbin_1995() {
+  return {
+      "D95",
+      "Durbin, Gossweiler and Pausch, Amortizing 3D Graphics Optimization Across Multiple Frames, UIST 1995",
+      {utility_test_95(), amusement_park_95()}};
+}
+
 std::string known_ids(const std::vector<Paper>& papers) {
   std::string text;
   for (const Paper& paper : papers) {
@@ -52,7 +60,7 @@ bool is_known(const std::vector<Paper>& papers, const std::string& id) {
 
 }  // namespace
 
-std::vector<Paper> all_papers() { return {lengyel_snyder_1997(), fearing_1996()}; }
+std::vector<Paper> all_papers() { return {lengyel_snyder_1997(), fearing_1996(), durbin_1995()}; }
 
 std::vector<Paper> chosen_papers(const std::vector<Paper>& papers, const std::vector<std::string>& only) {
   if (only.empty()) return papers;

@@ -20,8 +20,8 @@ std::string shape_words(const ReproducedRow& row) {
   return std::string(name(row.shape)) + (row.derived ? ", derived" : "");
 }
 
-Table table_of(const ReproducedItem& item) {
-  Table table{{"row", "the paper", "ours", "same shape?"}, {}, 4};
+PageTable table_of(const ReproducedItem& item) {
+  PageTable table{{"row", "the paper", "ours", "same shape?"}, {}, 4};
   for (const ReproducedRow& row : item.rows)
     table.rows.push_back(
         {row.id.substr(row.id.find('/') + 1), row.paper, row.finding.ours, shape_words(row)});

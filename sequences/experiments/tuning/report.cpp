@@ -73,10 +73,10 @@ std::vector<std::string> row_of(const TuneReport& report, const TunePoint& point
 }
 
 /// Every so many of the grid, and those next to the answer.
-Table curve_table(const TuneReport& report) {
+PageTable curve_table(const TuneReport& report) {
   constexpr int kEvery = 6, kBeside = 2;
   const std::string what = measure_of(report).quantity();
-  Table table{
+  PageTable table{
       {"threshold px", "cost %", "worst ms", "mean ms", "worst " + what, "mean " + what, "known from"},
       {},
       1};

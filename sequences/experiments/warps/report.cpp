@@ -59,15 +59,15 @@ Plot plot_of(const WarpReport& report, const RateFigure& figure) {
 
 // --- The page
 
-Table table_of(const std::vector<Statement>& statements) {
-  Table table{{"the paper", "this run (update rate relative to aff)", "agreement"}, {}, 3};
+PageTable table_of(const std::vector<Statement>& statements) {
+  PageTable table{{"the paper", "this run (update rate relative to aff)", "agreement"}, {}, 3};
   for (const Statement& s : statements)
     table.rows.push_back({s.paper, s.ours, std::string(name(s.agreement))});
   return table;
 }
 
-Table table_of(const Ranking& ranking) {
-  Table table{{"curve", "update rate relative to aff"}, {}, 1};
+PageTable table_of(const Ranking& ranking) {
+  PageTable table{{"curve", "update rate relative to aff"}, {}, 1};
   for (const CurveMerit& merit : ranking.merits)
     table.rows.push_back({text_of(merit.curve), fixed(merit.ratio, 3)});
   return table;
@@ -76,7 +76,7 @@ Table table_of(const Ranking& ranking) {
 /// The paper's figure 15 is the flat teapot.
 bool is_flat(const WarpObject& object) { return object.name.rfind("flat", 0) == 0; }
 
-Table agreement_table(const WarpReport& report, const RateFigure& figure) {
+PageTable agreement_table(const WarpReport& report, const RateFigure& figure) {
   return table_of(is_flat(object_of(report, figure)) ? compare_with_figure_15(figure.ranking)
                                                      : compare_with_figure_16(figure.ranking));
 }
@@ -90,10 +90,10 @@ void add_main_figure(Page& page, const WarpReport& report, const RateFigure& fig
   page.blocks.push_back(table_of(figure.ranking));
 }
 
-Table table_of_motions(const WarpReport& report) {
+PageTable table_of_motions(const WarpReport& report) {
   constexpr std::array shown = {Curve::trn,  Curve::iso, Curve::so,   Curve::pers,
                                 Curve::affi, Curve::per, Curve::per2, Curve::per2i};
-  Table table{{"object", "motion", "clusters, most renders first"}, {}, 3};
+  PageTable table{{"object", "motion", "clusters, most renders first"}, {}, 3};
   for (const Curve curve : shown) table.header.push_back(text_of(curve));
   for (const RateFigure& figure : report.figures) {
     std::vector<std::string> row{object_of(report, figure).title, figure.motion.title,
@@ -105,8 +105,8 @@ Table table_of_motions(const WarpReport& report) {
   return table;
 }
 
-Table table_of(const QualityRun& run) {
-  Table table{{"curve", "threshold px", "renders", "PSNR dB", "SSIM", "FLIP", "worst FLIP"}, {}, 1};
+PageTable table_of(const QualityRun& run) {
+  PageTable table{{"curve", "threshold px", "renders", "PSNR dB", "SSIM", "FLIP", "worst FLIP"}, {}, 1};
   for (const CurveQuality& q : run.curves)
     table.rows.push_back({text_of(q.curve), fixed(q.threshold_px, 3), std::to_string(q.renders),
                           fixed(q.mean.psnr_db, 2), fixed(q.mean.ssim, 4), fixed(q.mean.flip, 4),

@@ -104,11 +104,11 @@ std::string csv_of(const MeasuredSolvers& rungs) {
   return csv;
 }
 
-Table accuracy_table(const MeasuredSolvers& rungs) {
-  Table table{{"solver", "family", "median us", "p99 us", "max px", "excess %", "worst %", "rms excess %",
-               "unfinished", "uncertified", "offset px", "sprite px", "front"},
-              {},
-              2};
+PageTable accuracy_table(const MeasuredSolvers& rungs) {
+  PageTable table{{"solver", "family", "median us", "p99 us", "max px", "excess %", "worst %", "rms excess %",
+                   "unfinished", "uncertified", "offset px", "sprite px", "front"},
+                  {},
+                  2};
   for (const MeasuredSolver& rung : rungs) {
     const FitAccuracy& a = rung.accuracies[kShown];
     const std::string of = "/" + std::to_string(rung.inputs);
@@ -124,8 +124,8 @@ Table accuracy_table(const MeasuredSolvers& rungs) {
   return table;
 }
 
-Table time_table(const MeasuredSolvers& rungs) {
-  Table table{{"solver"}, {}, 1};
+PageTable time_table(const MeasuredSolvers& rungs) {
+  PageTable table{{"solver"}, {}, 1};
   for (const int n : kPointCounts) table.header.push_back("n = " + std::to_string(n));
   for (const MeasuredSolver& rung : rungs) {
     std::vector<std::string> row{rung.solver.name};

@@ -18,7 +18,7 @@ constexpr double kLeastGain = 0.02;
 constexpr double kNearlyAlways = 0.8, kMuchWork = 0.25;
 
 std::string sums_table(const ComparedFactoring& compared, double display_px) {
-  Table table{{"in all"}, {}, 1};
+  PageTable table{{"in all"}, {}, 1};
   for (const PlannedLayers& one : compared.all) table.header.push_back(one.name);
   const auto row = [&](const std::string& name, const auto& number, int digits) {
     table.rows.push_back({name});
@@ -43,7 +43,7 @@ std::string sums_table(const ComparedFactoring& compared, double display_px) {
 std::string signed_count(std::int64_t number) { return formatted("%+lld", static_cast<long long>(number)); }
 
 std::string changes_table(const std::vector<LayerChange>& changes) {
-  Table table{{"by itself", "renders", "polygons", "texels", "ms a frame"}, {}, 1};
+  PageTable table{{"by itself", "renders", "polygons", "texels", "ms a frame"}, {}, 1};
   for (const LayerChange& change : changes) {
     const PlannedFactoring &a = change.before, &b = change.after;
     const double ms = (b.work_ms() - a.work_ms()) / std::max(a.frames, 1);
@@ -56,7 +56,7 @@ std::string changes_table(const std::vector<LayerChange>& changes) {
 
 std::string layers_table(const ComparedFactoring& compared) {
   const FactoringStudy& study = compared.study;
-  Table table{{"proposed layer", "parts", "polygons", "renders", "merged", "ms a frame"}, {}, 1};
+  PageTable table{{"proposed layer", "parts", "polygons", "renders", "merged", "ms a frame"}, {}, 1};
   for (const LayerSummary& row : compared.all[1].summary.layers) {
     if (row.is_aggregate) continue;
     const double frames = static_cast<double>(compared.all[1].summary.frames.size());

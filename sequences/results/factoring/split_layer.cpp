@@ -85,7 +85,8 @@ const LayerSummary* planned_row(const Summary& summary, const std::string& name)
   return nullptr;
 }
 
-void add_split_row(Table& table, const Summary& summary, const std::string& name, const std::string& indent) {
+void add_split_row(PageTable& table, const Summary& summary, const std::string& name,
+                   const std::string& indent) {
   const LayerSummary* row = planned_row(summary, name);
   if (!row) return;
   const double frames = static_cast<double>(std::max<std::size_t>(summary.frames.size(), 1));
@@ -128,10 +129,10 @@ SplitSequence split_layer(const Sequence& sequence, const std::string& layer) {
 
 std::string split_table(const Summary& now, const Summary& split, const std::string& layer,
                         const std::vector<std::string>& pieces) {
-  Table layers_table{{"layer", "polygons", "renders", "merged", "ms a frame"}, {}, 1};
+  PageTable layers_table{{"layer", "polygons", "renders", "merged", "ms a frame"}, {}, 1};
   add_split_row(layers_table, now, layer, "");
   for (const std::string& piece : pieces) add_split_row(layers_table, split, piece, "  ");
-  Table sums{{"in all", "now", "split", "change"}, {}, 1};
+  PageTable sums{{"in all", "now", "split", "change"}, {}, 1};
   const auto add = [&](const char* name, double a, double b, int digits) {
     sums.rows.push_back({name, fixed(a, digits), fixed(b, digits), changed_by(a, b)});
   };

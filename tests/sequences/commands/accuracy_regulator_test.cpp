@@ -132,8 +132,8 @@ TEST(RunAccuracy, ExactlyOneExperimentMustBeAskedFor) {
   std::ostringstream out;
   AccuracyOptions none, both, others;
   both.solvers = true;
-  both.regulator.sequence = "canyon";
-  others.regulator.sequence = others.renderer = "canyon";
+  both.regulator = "canyon";
+  others.regulator = others.renderer = "canyon";
   EXPECT_THAT(tests::message_of([&] { run_accuracy(none, out); }), HasSubstr("nothing to measure"));
   EXPECT_THAT(tests::message_of([&] { run_accuracy(both, out); }), HasSubstr("more than one experiment"));
   EXPECT_THAT(tests::message_of([&] { run_accuracy(others, out); }), HasSubstr("more than one experiment"));

@@ -19,11 +19,11 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kMovingFrames = 24;
+constexpr int kFramesThatMove = 24;
 
 OpenSequence opened_moving(const std::string& name) {
   if (name != "moving") throw InputError("'" + name + "' has no content");
-  const Variant run = tests::run_of(tests::moving_sequence(kMovingFrames));
+  const Variant run = tests::run_of(tests::moving_sequence(kFramesThatMove));
   return {run.sequence, run.settings};
 }
 
@@ -149,11 +149,11 @@ TEST(PaperBench, PlansAreThoseOfARunAndMadeOnce) {
   OpenSequence open = opened_moving("moving");
   open.settings.regulator.policy = regulator::Policy::Threshold;
   open.settings.regulator.thresholds.geometric_px = 1;
-  open.settings.frames = kMovingFrames;
-  const Summary alone = planned(open.sequence, open.settings, {0, kMovingFrames - 1});
-  ASSERT_EQ(run.summary.frames.size(), std::size_t{kMovingFrames});
+  open.settings.frames = kFramesThatMove;
+  const Summary alone = planned(open.sequence, open.settings, {0, kFramesThatMove - 1});
+  ASSERT_EQ(run.summary.frames.size(), std::size_t{kFramesThatMove});
   EXPECT_EQ(run.summary.polygons_rendered(), alone.polygons_rendered());
-  EXPECT_EQ(run.sprite_depth.size(), std::size_t{kMovingFrames});
+  EXPECT_EQ(run.sprite_depth.size(), std::size_t{kFramesThatMove});
 }
 
 TEST(PaperBench, TripleFramingDrawsInEveryThirdFrame) {
@@ -178,9 +178,9 @@ TEST(PaperBench, AnotherSpeedIsAnotherStepOfTime) {
   slow.speed = 0.5;
   fast.speed = 2;
   EXPECT_DOUBLE_EQ(changed(original, slow).settings.fps, 2 * original.settings.fps);
-  EXPECT_EQ(changed(original, slow).settings.frames, kMovingFrames);
+  EXPECT_EQ(changed(original, slow).settings.frames, kFramesThatMove);
   EXPECT_DOUBLE_EQ(changed(original, fast).settings.fps, original.settings.fps / 2);
-  EXPECT_EQ(changed(original, fast).settings.frames, kMovingFrames / 2);
+  EXPECT_EQ(changed(original, fast).settings.frames, kFramesThatMove / 2);
 }
 
 TEST(PaperBench, AFixedCameraStaysWhereItIsInTheMiddle) {
@@ -189,7 +189,7 @@ TEST(PaperBench, AFixedCameraStaysWhereItIsInTheMiddle) {
   of.fixed_camera = true;
   const OpenSequence fixed = changed(original, of);
   const layers::Scene& scene = *fixed.sequence.scene;
-  const double middle_s = kMovingFrames / 2 / original.sequence.fps;
+  const double middle_s = kFramesThatMove / 2 / original.sequence.fps;
   const layers::dmat4 wanted = original.sequence.scene->at(middle_s).camera.world_from_camera;
   for (const double t : {0.0, 0.3, 1.0})
     for (int column = 0; column < 4; ++column)

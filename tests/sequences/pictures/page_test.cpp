@@ -18,7 +18,7 @@ Page example() {
   Page page;
   page.title = "A < B & C";
   page.blocks = {Heading{2, "numbers"}, Paragraph{"a \"quoted\" <tag>"},
-                 Table{{"curve", "rate"}, {{"so | soi", "1.5"}, {"µ", "20.25"}}, 1}};
+                 PageTable{{"curve", "rate"}, {{"so | soi", "1.5"}, {"µ", "20.25"}}, 1}};
   return page;
 }
 
@@ -53,7 +53,7 @@ TEST(Html, FiguresAreInsideAndKeepTheirOwnIds) {
 }
 
 TEST(PlainText, ColumnsLineUpByCodePoints) {
-  const Table table{{"µs", "n"}, {{"é", "1"}, {"abc", "100"}}, 1};
+  const PageTable table{{"µs", "n"}, {{"é", "1"}, {"abc", "100"}}, 1};
   EXPECT_EQ(plain_text(table), "µs     n\né      1\nabc  100\n");
 }
 
