@@ -8,6 +8,7 @@
 #include "sequences/commands/accuracy_regulator.h"
 #include "sequences/commands/accuracy_renderer.h"
 #include "sequences/commands/motion/accuracy_amortised.h"
+#include "sequences/commands/motion/accuracy_latency.h"
 #include "sequences/commands/motion/accuracy_predictive.h"
 #include "sequences/commands/words.h"
 #include "sequences/experiments/warps/solver_report.h"
@@ -40,6 +41,7 @@ constexpr SequenceExperiment kSequenceExperiments[] = {
     {"--factoring", &AccuracyOptions::factoring, run_factoring_accuracy},
     {"--predictive", &AccuracyOptions::predictive, run_predictive_accuracy},
     {"--amortised", &AccuracyOptions::amortised, run_amortised_accuracy},
+    {"--latency", &AccuracyOptions::latency, run_latency_accuracy},
 };
 
 /// The one experiment that is asked for; null: --solvers or --hard.
@@ -64,6 +66,8 @@ const SequenceExperiment* chosen_experiment(const AccuracyOptions& options) {
 
 int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
   const SequenceExperiment* experiment = chosen_experiment(options);
+  if (options.of_sequence.warp_ms != 0 && options.latency.empty())
+    throw InputError("--warp-ms is about the last warp of --latency, must come with it");
   require_plotter();
   if (options.solvers) return run_solver_accuracy(options, out);
   if (options.hard)

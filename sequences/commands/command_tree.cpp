@@ -47,6 +47,9 @@ constexpr std::array kExamples{
     Examples{"diff", "talisman diff out/a/frames out/b/frames", "talisman diff a.png b.png --map out/map"},
     Examples{"export", "talisman export out/carousel --csv",
              "talisman export out/carousel --sqlite --trace --no-timing"},
+    Examples{"merge", "talisman merge out/carousel", "talisman merge out/carousel --allow-partial"},
+    Examples{"farm", "talisman farm slurm carousel --shards 4 --size 64x48 > submit",
+             "talisman farm table --sweep sweep.yaml"},
     Examples{"report", "talisman report out/carousel", "talisman report out/a out/b --out compared.html"},
     Examples{"warps", "talisman warps --object vase", "talisman warps --bound dop14 --out out/warps-dop14"},
     Examples{"reproduce", "talisman reproduce --quick", "talisman reproduce --only LS97:22 LS97:23"},
@@ -88,11 +91,13 @@ CommandTree::CommandTree(const std::atomic<bool>& stop)
   add_init();
   add_diff();
   add_exports();
+  add_merge();
+  add_farm(stop);
   add_warps();
   add_reproduce();
   add_accuracy();
   for (const char* command : {"render", "plan", "audit", "explain", "view", "tune", "compare", "inspect",
-                              "motion", "init", "warps", "reproduce", "accuracy"})
+                              "motion", "init", "farm", "warps", "reproduce", "accuracy"})
     add_cache_options(*app_.get_subcommand(command), cache_);
   add_examples(app_);
 }
@@ -101,10 +106,12 @@ void CommandTree::add_runs(const std::atomic<bool>& stop) {
   CLI::App* render = app_.add_subcommand("render", "draw a sequence or a model");
   add_run_options(*render, line_);
   add_picture_options(*render, line_);
+  add_shard_options(*render, line_, false);
   render->callback([this, &stop] { exit_code_ = run_sequence(line_, false, stop, std::cout); });
 
   CLI::App* plan = app_.add_subcommand("plan", "the same decisions and costs, without pixels");
   add_run_options(*plan, line_);
+  add_shard_options(*plan, line_, true);
   OptionGroup(*plan, "What if")
       .option("--split", split_,
               "name of a layer: plan again with each of its parts as a layer of its own, and print both");
@@ -183,6 +190,13 @@ void CommandTree::add_inspect() {
             "and one "
             "for all; the layers as YAML to paste")
       .option("--max-layers", inspect_.max_layers, "with --factoring: propose no more than so many", "40")
+      .flag("--motion", inspect_.motion,
+            "SEQUENCE is the file of a trace of poses: its rate, length, speeds, gaps and jumps")
+      .option("--format", inspect_.trace.format, "with --motion: tum, euroc, colmap, iwer or bvh",
+              "by the name")
+      .option("--joint", inspect_.trace.joint, "with --motion: of bvh, whose pose it is", "Head")
+      .option("--fps", inspect_.trace.fps, "with --motion: of colmap, which has no times, and of bvh")
+      .option("--scale", inspect_.trace.scale, "with --motion: metres per unit of the file", "1")
       .option("--cycles", inspect_.cycles, "with --order: " + alternatives(kCyclesWords))
       .option("--compositor", inspect_.compositor, "with --order: " + alternatives(kCompositorWords));
   add_content_options(*command, inspect_.content);
@@ -250,6 +264,43 @@ void CommandTree::add_exports() {
   columns->callback([this] { exit_code_ = update_column_tables(documented_); });
 }
 
+void CommandTree::add_merge() {
+  CLI::App* command =
+      app_.add_subcommand("merge", "the parts that render or plan --shard made become one run");
+  command->add_option("folder", merge_.out, "the --out of the parts: they lie in DIR/shards")->required();
+  command->add_flag(
+      "--allow-partial", merge_.allow_partial,
+      "leave out what is missing, unfinished or damaged: DIR is then as an interrupted run left it");
+  command->add_flag("--force", merge_.force, "write into DIR though it holds files that are not of a run");
+  command->add_flag("--quiet", merge_.quiet, "no table; warnings and errors alone");
+  command->callback([this] { exit_code_ = run_merge(merge_, std::cout); });
+}
+
+void CommandTree::add_farm(const std::atomic<bool>& stop) {
+  CLI::App* command = app_.add_subcommand(
+      "farm", "scripts for a cluster's queue, and sweeps of settings; submits nothing itself");
+  command
+      ->add_option(
+          "action", farm_.action,
+          "slurm: print a script that submits; list: the tasks of a sweep; run: one of them; table: collect")
+      ->required();
+  command->add_option("sequence", farm_.sequence,
+                      "slurm: what is drawn; options of render or plan go with it");
+  command->allow_extras();
+  OptionGroup(*command, "Options")
+      .option("--shards", farm_.shards, "ranges into which the frames of a run are cut", "1")
+      .option("--sweep", farm_.sweep, "YAML file: sequences and settings (docs/scale.md)")
+      .option("--out", farm_.out, "slurm SEQUENCE: result folder", "out/NAME")
+      .option("--command", farm_.command, "slurm SEQUENCE: render or plan", farm_.command)
+      .option("--at-most", farm_.at_most, "tasks at once; 0: as many as there is room for", "0")
+      .option("--cpus", farm_.cpus, "of a task: its threads", "1")
+      .option("--task", farm_.task, "run: number of the task, from 0");
+  command->callback([this, command, &stop] {
+    farm_.options = command->remaining();
+    exit_code_ = run_farm(farm_, stop, std::cout);
+  });
+}
+
 void CommandTree::add_warps() {
   CLI::App* command = app_.add_subcommand(
       "warps", "update rate against error of every warp, and picture quality at one rate");
@@ -287,10 +338,16 @@ void CommandTree::add_accuracy() {
       .option("--amortised", accuracy_.amortised,
               "SEQUENCE: layers that share sprites while it runs, beside the author's, one per part and one "
               "for all")
+      .option("--latency", accuracy_.latency,
+              "SEQUENCE: how far points are off by the age of the camera's pose, held, linear, kalman; and "
+              "what a "
+              "last warp saves")
       .flag("--hard", accuracy_.hard,
             "cases of every stage that a careless one gets wrong, each with its rule; exit code 1 if one is "
             "broken");
   OptionGroup(*command, "Options")
+      .option("--warp-ms", accuracy_.of_sequence.warp_ms, "latency: age of the pose of the last warp, ms",
+              "0")
       .option("--inputs", accuracy_.inputs, "solvers: boxes per number of points",
               std::to_string(accuracy_.inputs))
       .option("--frames", accuracy_.of_sequence.frames, "regulator, renderer, factoring: A-B, inclusive",

@@ -13,6 +13,8 @@
 #include "sequences/commands/diff_command.h"
 #include "sequences/commands/explain.h"
 #include "sequences/commands/export_command.h"
+#include "sequences/commands/farm/farm_command.h"
+#include "sequences/commands/farm/shard_command.h"
 #include "sequences/commands/init.h"
 #include "sequences/commands/inspect.h"
 #include "sequences/commands/motion/motion_command.h"
@@ -49,6 +51,8 @@ class CommandTree {
   void add_init();
   void add_diff();
   void add_exports();
+  void add_merge();
+  void add_farm(const std::atomic<bool>& stop);
   void add_warps();
   void add_reproduce();
   void add_accuracy();
@@ -65,6 +69,8 @@ class CommandTree {
   InitOptions init_;
   DiffOptions diff_;
   ExportOptions export_;
+  MergeOptions merge_;
+  FarmOptions farm_;
   ReportOptions report_;
   std::string documented_;
   WarpsOptions warps_;

@@ -24,6 +24,7 @@ struct ExperimentOptions {
   int quality_every = 0;  ///< ≥ 1: one frame of so many is drawn and compared, cost in proportion to its
                           ///< inverse; 0: so that about kDefaultSamples are
   std::string progress = "auto";  ///< auto, bar, plain or none
+  double warp_ms = 0;             ///< of latency alone: age of the pose of the last warp, 0 … 1000
 };
 
 /// With these the canyon takes about three minutes on two cores.

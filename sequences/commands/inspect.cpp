@@ -149,8 +149,10 @@ namespace {
 void require_one_question(const InspectOptions& options) {
   if (!options.out.empty() && !options.parts)
     throw InputError("--out is the picture of --parts, must come with it");
-  if (options.parts + options.order + options.factoring > 1)
-    throw InputError("--parts, --order and --factoring are several questions, must be one");
+  if (options.parts + options.order + options.factoring + options.motion > 1)
+    throw InputError("--parts, --order, --factoring and --motion are several questions, must be one");
+  if (options.trace.any() && !options.motion)
+    throw InputError("--format, --joint, --fps and --scale are about a trace, must come with --motion");
   if (options.max_layers && !options.factoring)
     throw InputError("--max-layers limits what --factoring proposes, must come with it");
   if (options.factoring && options.json)
@@ -169,6 +171,10 @@ int run_inspect(const InspectOptions& options, std::ostream& out) {
   if (options.sequence.empty()) {
     if (options.profile) return kSuccess;
     throw InputError("inspect needs a SEQUENCE, a MODEL or --profile");
+  }
+  if (options.motion) {
+    out << inspect_motion(options.sequence, options.trace, options.json);
+    return kSuccess;
   }
   ContentWords content = options.content;
   content.no_stage |= options.parts;  // the ground that a bare model is given is not in its file

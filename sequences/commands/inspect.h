@@ -2,12 +2,14 @@
 #pragma once
 
 /// `talisman inspect`: what is in a sequence before anything is drawn: layers, polygons, memory, and the
-/// effects that it calls for, with reasons; or its visibility order over time (inspect_order.h).
+/// effects that it calls for, with reasons; or its visibility order over time (inspect_order.h);
+/// or what a trace of poses holds (inspect_motion.h).
 
 #include <iosfwd>
 #include <optional>
 #include <string>
 
+#include "sequences/commands/inspect/inspect_motion.h"
 #include "sequences/commands/options.h"
 #include "sequences/content/sequence.h"
 
@@ -19,6 +21,8 @@ struct InspectOptions {
   std::string out;                 ///< picture of `parts`
   bool json = false, profile = false, order = false, parts = false, factoring = false;
   std::optional<int> max_layers;  ///< of `factoring`
+  bool motion = false;            ///< `sequence` is the file of a trace
+  MotionQuestion trace;           ///< of `motion`
   ContentWords content;
 };
 

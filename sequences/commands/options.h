@@ -49,7 +49,8 @@ struct CommandLine {
   bool audit_alone = false;
   bool quiet = false;  ///< no progress, no table
   bool no_report = false, no_thumbnails = false;
-  bool force = false;  ///< take a folder that holds other files
+  bool force = false;             ///< take a folder that holds other files
+  std::string shard, shard_plan;  ///< "i/N", and the folder of a plan by whose costs frames are shared out
   ContentWords content;
 };
 

@@ -10,6 +10,7 @@
 
 #include <oneapi/tbb/global_control.h>
 
+#include "sequences/commands/farm/shard_command.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/quoted.h"
 #include "sequences/pictures/page_assets.h"
@@ -85,11 +86,14 @@ void require_video(const RunOutcome& outcome) {
 int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool>& stop, std::ostream& out) {
   heeds_stop = true;
   using oneapi::tbb::global_control;
+  require_threads(line.threads);
+  require_shard_options(line, plan_only);
+  std::optional<global_control> threads;
+  if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);
+  if (!line.shard.empty()) return run_shard(line, plan_only, stop, out);
   const Sequence sequence = load_with_warnings(line);
   ResolvedRun resolved = resolve(line, sequence, plan_only);
   resolved.options.changes = makes_report(line) && resolved.options.decisions == DecisionLines::All;
-  std::optional<global_control> threads;
-  if (line.threads > 0) threads.emplace(global_control::max_allowed_parallelism, line.threads);
   const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop);
   write_page(sequence, resolved, outcome, line);
   say_capped_sprites(outcome.summary, resolved.settings.placement.max_sprite_px);

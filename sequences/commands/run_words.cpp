@@ -247,6 +247,18 @@ void add_content_options(CLI::App& command, ContentWords& words) {
 
 void add_picture_options(CLI::App& command, CommandLine& line) { add_pictures(command, line); }
 
+void add_shard_options(CLI::App& command, CommandLine& line, bool plan_only) {
+  OptionGroup group(command, "Parts, for many machines");
+  group
+      .option("--shard", line.shard,
+              "i/N, i from 0: one of N ranges of the frames, into DIR/shards/i-of-N; talisman merge DIR "
+              "joins them")
+      .option("--plan", line.shard_plan,
+              "folder of a plan with the same options: ranges that cost the same, instead of equally many "
+              "frames");
+  if (plan_only) group.flag("--resume", line.resume, "with --shard: leave a part that is complete as it is");
+}
+
 namespace {
 
 /// "geometric_px" of "--geometric-px".

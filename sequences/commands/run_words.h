@@ -25,6 +25,8 @@ void add_decision_options(CLI::App& command, CommandLine& line, const std::strin
 /// The further options of `render`.
 void add_audit_options(CLI::App& command, CommandLine& line);
 void add_picture_options(CLI::App& command, CommandLine& line);
+/// Those of a run that is made in parts.
+void add_shard_options(CLI::App& command, CommandLine& line, bool plan_only);
 
 /// What `talisman plan SEQUENCE WORDS…` (or render) would be told. Throws InputError for a word that is unknown
 /// or has not the value that it needs; what the values may be is checked by `resolve`.

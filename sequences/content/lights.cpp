@@ -48,7 +48,7 @@ LightKeys place_keys() {
       .include(&LightRecipe::motion, motion_keys())
       .placed([](LightRecipe& l, const YamlValue& self) {
         const YamlMap map = self.map();
-        for (const char* key : {"carried_by", "rotation_deg", "look_at", "flight", "spin"})
+        for (const char* key : {"carried_by", "rotation_deg", "look_at", "flight", "trace", "spin"})
           l.moves |= map.find(key) != nullptr;
       })
       .ends([](LightRecipe& l) {

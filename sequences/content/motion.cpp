@@ -4,6 +4,8 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "sequences/content/traces/trace_keys.h"
+
 namespace talisman::sequences {
 
 namespace {
@@ -106,6 +108,10 @@ const Table<Motion>& motion_keys() {
                   "place to which its -z points, instead of `rotation_deg`")
           .not_with({"flight"})
           .key("flight", &Motion::flight, flight(), "", "where it flies, over time")
+          .key("trace", &Motion::trace, map_of(trace_keys()), "",
+               "moves as somebody's head, camera or body did; position and rotation_deg are then its place "
+               "on that")
+          .not_with({"flight", "look_at"})
           .key("spin", &Motion::spin, map_of(spin_keys()), "",
                "turns what stands or flies about its own origin");
   return table;

@@ -9,6 +9,7 @@
 
 #include "layers/scene.h"
 #include "sequences/content/key_table.h"
+#include "sequences/content/traces/trace.h"
 
 namespace talisman::sequences {
 
@@ -19,6 +20,7 @@ struct Motion {
   layers::Transform rest;
   std::optional<layers::FlightTrack> flight;
   std::optional<layers::SpinTrack> spin;
+  std::optional<TraceOptions> trace;  ///< what is tracked moves so; `rest` is then its place on that
 };
 
 const Table<Motion>& motion_keys();

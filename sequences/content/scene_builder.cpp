@@ -36,11 +36,30 @@ int carrier_of(const BuiltScene& built, const Motion& motion) {
 
 }  // namespace
 
-/// The node (with one below it for a spin, so that both motions add up) that carries something; returns the
-/// lowest.
+namespace {
+
+/// The node that moves as what was tracked. What is said of the trace is said of the sequence.
+int add_trace(BuiltScene& built, const std::string& name, int carrier, const TraceOptions& options) {
+  Trace trace = read_trace(options, built.last_s);
+  built.files.push_back(options.file);
+  built.warnings.insert(built.warnings.end(), trace.warnings.begin(), trace.warnings.end());
+  built.notes.insert(built.notes.end(), trace.notes.begin(), trace.notes.end());
+  const int node = add_node(built.scene, name, carrier);
+  built.scene.tracks.push_back({node, track_of(std::move(trace), options.resample)});
+  return node;
+}
+
+}  // namespace
+
+/// The node (with others above and below it for a trace and a spin, so that the motions add up) that carries something;
+/// returns the lowest.
 int add_motion(BuiltScene& built, const std::string& name, const Motion& motion) {
   layers::Scene& scene = built.scene;
-  int node = add_node(scene, name, carrier_of(built, motion), motion.rest);
+  int carrier = carrier_of(built, motion);
+  if (motion.trace) carrier = add_trace(built, name, carrier, *motion.trace);
+  const bool is_placed =
+      motion.rest.translation != layers::dvec3(0) || motion.rest.rotation != glm::dquat(1, 0, 0, 0);
+  int node = motion.trace && !is_placed ? carrier : add_node(scene, name, carrier, motion.rest);
   if (motion.flight) scene.tracks.push_back({node, *motion.flight});
   if (!motion.spin) return node;
   node = add_node(scene, name, node);
@@ -297,6 +316,7 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   BuiltScene built;
   built.scene.background = recipe.background;
   built.files = files_of(recipe);
+  built.last_s = recipe.times.last_s();
   if (recipe.sky) add_sky(built.scene, *recipe.sky);
   if (recipe.terrain) add_terrain(built.scene, *recipe.terrain);
   for (const ShapeRecipe& shape : recipe.shapes) add_shape(built, shape);

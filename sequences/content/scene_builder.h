@@ -27,9 +27,11 @@ struct BuiltScene {
   std::vector<std::string> files = {};          ///< that were opened for it: Sequence::content_files
   std::map<std::string, int> carriers = {};     ///< the node of each shape and image, by its name
   std::vector<ModelCamera> model_cameras = {};  ///< of which the recipe may choose one
+  double last_s = 0;  ///< time of the sequence's last frame: so much of traces is read
 };
 
-/// The node, with its motion, that carries something; throws InputError for a carrier that is not there.
+/// The node, with its motion, that carries something; throws InputError for a carrier that is not there and a trace that
+/// is none.
 int add_motion(BuiltScene& built, const std::string& name, const Motion& motion);
 
 /// Opens the assets. Where the recipe has no camera or no light, the scene gets the defaults of

@@ -19,8 +19,8 @@ const Table<OrbitRecipe>& orbit_keys() {
   return table;
 }
 
-const std::vector<std::string> kMotionKeys = {"carried_by", "position", "rotation_deg",
-                                              "look_at",    "flight",   "spin"};
+const std::vector<std::string> kMotionKeys = {"carried_by", "position", "rotation_deg", "look_at",
+                                              "flight",     "trace",    "spin"};
 
 /// Keys of a camera that one of a model has from its file.
 std::vector<std::string> keys_of_a_view() {

@@ -53,16 +53,19 @@ std::optional<double> ReasonKind::median() const {
   return *middle;
 }
 
-void ReasonTally::add(const std::string& reason) {
-  ReasonKind kind = kind_of_reason(reason);
-  const auto known =
-      std::find_if(kinds_.begin(), kinds_.end(), [&](const ReasonKind& k) { return k.words == kind.words; });
-  if (known == kinds_.end()) {
-    kinds_.push_back(std::move(kind));
-    return;
+void ReasonTally::add(const std::string& reason) { add(ReasonTally::of({kind_of_reason(reason)})); }
+
+void ReasonTally::add(const ReasonTally& later) {
+  for (const ReasonKind& kind : later.kinds_) {
+    const auto known = std::find_if(kinds_.begin(), kinds_.end(),
+                                    [&](const ReasonKind& k) { return k.words == kind.words; });
+    if (known == kinds_.end()) {
+      kinds_.push_back(kind);
+      continue;
+    }
+    known->values.insert(known->values.end(), kind.values.begin(), kind.values.end());
+    known->times += kind.times;
   }
-  known->values.insert(known->values.end(), kind.values.begin(), kind.values.end());
-  ++known->times;
 }
 
 const ReasonKind* ReasonTally::most_frequent() const {

@@ -8,6 +8,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace talisman::sequences {
@@ -24,6 +25,15 @@ struct ReasonKind {
 class ReasonTally {
  public:
   void add(const std::string& reason);
+  /// Of reasons that came behind ours.
+  void add(const ReasonTally& later);
+  const std::vector<ReasonKind>& kinds() const { return kinds_; }
+  /// Of kinds that were kept.
+  static ReasonTally of(std::vector<ReasonKind> kinds) {
+    ReasonTally tally;
+    tally.kinds_ = std::move(kinds);
+    return tally;
+  }
   /// The kind that came most often; of equal ones, the first to come. Null: there was no reason.
   const ReasonKind* most_frequent() const;
   int total() const;

@@ -110,6 +110,9 @@ class Runner {
     const bool draw = in_range && kept == kept_.end() && prepared_;
     FrameReport report = step(pipeline_, state_, frame, draw ? prepared_.get() : nullptr);
     if (changes_) write_changes(report, in_range);
+    if (!in_range && frame < options_.first_frame && options_.part_of_run_from &&
+        frame >= *options_.part_of_run_from)
+      note_decisions(report);
     if (!in_range) return;
     add_decisions(summary_, report, state_);
     write_decisions(report);
@@ -151,6 +154,13 @@ class Runner {
     filter_.begin_frame();
     for (const DecisionRow& row : decision_rows(state_, report))
       if (filter_.has_line(row)) decisions_->write(json_of(row));
+  }
+
+  /// Of a frame whose lines another part of the run has: whether those of the next one have changed is seen by them.
+  void note_decisions(const FrameReport& report) {
+    if (!decisions_) return;
+    filter_.begin_frame();
+    for (const DecisionRow& row : decision_rows(state_, report)) filter_.has_line(row);
   }
 
   /// What cannot succeed ends before the folder is touched.

@@ -15,6 +15,7 @@
 #include "sequences/results/json_text.h"
 #include "sequences/results/kept_pictures.h"
 #include "sequences/results/run_identity.h"
+#include "sequences/results/shards/shard.h"
 #include "sequences/results/timing.h"
 
 namespace talisman::sequences {
@@ -63,13 +64,14 @@ bool is_plan(const Json& run) { return run.is_object() && text_in(run, "kind") =
 /// so does not count.
 bool holds_others_files(const std::string& out, const Json& earlier) {
   if (earlier.is_object() && text_in(earlier, "schema").rfind("talisman.run/", 0) == 0) return false;
-  const std::set<std::string> ours = {".lock", "frames", "separate"};
+  const std::set<std::string> ours = {".lock", "frames",
+                                      "separate"};  // and the parts that are merged into it
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(out, error)) {
     const std::string name = entry.path().filename().string();
     const bool is_left_over =
         name.rfind(".tmp-", 0) == 0 || (ours.contains(name) && fs::is_empty(entry, error));
-    if (name != ".lock" && !is_left_over) return true;
+    if (name != ".lock" && name != kShardsFolder && !is_left_over) return true;
   }
   return false;
 }

@@ -3,6 +3,7 @@
 
 /// What a run writes, and where: everything that is not a setting of the pipeline.
 
+#include <optional>
 #include <string>
 
 #include "sequences/files/image_io.h"
@@ -17,6 +18,9 @@ enum class DecisionLines { All, Changed, None };
 struct RunOptions {
   std::string out;                      ///< result folder, made if missing
   int first_frame = 0, last_frame = 0;  ///< inclusive
+  /// First frame of the run of which this is a part (shards/shard.h); empty: it is whole. Lines that depend on the frame
+  /// before are those of that run.
+  std::optional<int> part_of_run_from = {};
   FrameFormat format = FrameFormat::Png;
   bool plan_only = false;  ///< decisions and costs without pixels
   bool separate = false;   ///< also each shade sprite alone, and the sums, in DIR/separate

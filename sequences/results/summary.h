@@ -12,6 +12,7 @@
 #include "layers/effects.h"
 #include "sequences/pipeline/pipeline.h"
 #include "sequences/results/audit.h"
+#include "sequences/results/exact_sum.h"
 #include "sequences/results/frame_lines.h"
 #include "sequences/results/frame_totals.h"
 #include "sequences/results/reason_tally.h"
@@ -23,16 +24,16 @@ struct LayerSummary {
   std::string name;
   int parts = 0, polygons = 0;
   int renders = 0, frames_shown = 0;
-  double sum_geometric_px = 0;  ///< over the frames in which it was shown
+  ExactSum sum_geometric_px;  ///< over the frames in which it was shown
   double max_geometric_px = 0;
   layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
-  double sum_resolution = 0;      ///< over the frames in which it was shown
+  ExactSum sum_resolution;        ///< over the frames in which it was shown
   int merged_renders = 0;         ///< renders of aggregates in which it took part; not among `renders`
   bool is_capped = false;         ///< a sprite had fewer texels than asked for, by max_sprite_px
   bool is_aggregate = false;      ///< counted with its members where rates are averaged
   bool is_shadow_map = false;     ///< not counted where rates are averaged
   bool is_mirror = false;         ///< likewise: the pictures that a layer mirrors, drawn with its sprite
-  double render_ms = 0;           ///< modelled (results/summary.cpp), of its renders
+  ExactSum render_ms;             ///< modelled (results/summary.cpp), of its renders
   ReasonTally reasons{};          ///< of its renders
   int frames_deferred = 0;        ///< worth drawing, but the budget did not suffice
   int frames_over_budget = 0;     ///< of these: dearer than the whole budget

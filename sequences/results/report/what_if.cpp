@@ -37,14 +37,23 @@ bool has_threshold(const Settings& settings) {
 
 void write_what_if(const Sequence& sequence, const Settings& settings, const FrameRange& range,
                    const Summary& now, const std::string& folder) {
+  write_what_if(what_if_plans(sequence, settings, range), now, folder);
+}
+
+Json what_if_plans(const Sequence& sequence, const Settings& settings, const FrameRange& range) {
   const double threshold_px = settings.regulator.thresholds.geometric_px;
   const auto plan = [&](double factor) {
     Settings other = settings;
     other.regulator.thresholds.geometric_px = factor * threshold_px;
     return what_if_plan(factor, factor * threshold_px, planned(sequence, other, range));
   };
-  const Json json = {{"schema", "talisman.what_if/1"},
-                     {"plans", {plan(0.5), what_if_plan(1, threshold_px, now), plan(2)}}};
+  return {{"geometric_px", threshold_px}, {"half", plan(0.5)}, {"twice", plan(2)}};
+}
+
+void write_what_if(const Json& plans, const Summary& now, const std::string& folder) {
+  const Json json = {
+      {"schema", "talisman.what_if/1"},
+      {"plans", {plans.at("half"), what_if_plan(1, plans.at("geometric_px"), now), plans.at("twice")}}};
   write_text_atomically(folder + "/what-if.json", json.dump(2) + "\n");
 }
 
