@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 
+#include "chunker/prepared.h"
 #include "chunker/tangent_frames.h"
 #include "chunker/transform.h"
 #include "layers/check.h"
@@ -257,6 +258,13 @@ PartInputs own_inputs(const layers::SceneFrame& frame, const ShadeInputs& inputs
   return own;
 }
 
+/// Is the part wholly outside of what the sprite shows?
+bool is_out_of_sight(const PreparedScene& prepared, const layers::SceneFrame& frame, const layers::Part& part,
+                     const layers::Region& region) {
+  const layers::Box3 box = part_box(frame, part, prepared.impl().boxes[part.mesh]);
+  return layers::RegionTest(region, layers::reach_of({&box, 1})).misses(box);
+}
+
 }  // namespace
 
 void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& frame,
@@ -273,6 +281,7 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
     list.reflections.push_back({r.picture, r.picture_from_screen * placement.screen_from_sprite});
   list.batches.reserve(parts.size());
   const auto view = sprite_view(frame, display_px, placement, inputs.kept);
+  const layers::Region region = view ? sprite_region(*view) : layers::Region{};
   for (const int index : parts) {
     const layers::Part& part = scene.parts[index];
     const layers::Mesh& mesh = scene.meshes[part.mesh];
@@ -282,6 +291,7 @@ void build_draw_list(const PreparedScene& prepared, const layers::SceneFrame& fr
         make_shader(prepared, part, list.lights, options, inputs, own_inputs(frame, inputs, index, list));
     if (shader.opacity == 0) continue;
     list.batches.push_back({shader, {}});
+    if (is_out_of_sight(prepared, frame, part, region)) continue;
     const bool flat = shader.lit && (options.shading == Shading::Flat || mesh.normals.empty());
     PartAssembly assembly(frame, part, *view, list.batches.back().shader, flat);
     assembly.run_vertices();

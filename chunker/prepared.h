@@ -7,13 +7,15 @@
 
 #include "chunker/render.h"
 #include "chunker/texture.h"
+#include "layers/part_box.h"
 
 namespace talisman::chunker {
 
 struct PreparedScene::Impl {
   const layers::Scene* scene = nullptr;
-  std::vector<Pyramid> pyramids;  ///< as many as Scene::textures
-  std::vector<Pyramid> normals;   ///< likewise, of normal textures; without any where no part asks for one
+  std::vector<Pyramid> pyramids;       ///< as many as Scene::textures
+  std::vector<layers::MeshBox> boxes;  ///< as many as Scene::meshes
+  std::vector<Pyramid> normals;  ///< likewise, of normal textures; without any where no part asks for one
 };
 
 }  // namespace talisman::chunker

@@ -124,6 +124,7 @@ RenderCounters& RenderCounters::operator+=(const RenderCounters& o) {
 PreparedScene::PreparedScene(const layers::Scene& scene, const RenderOptions& options)
     : impl_(std::make_shared<Impl>()) {
   impl_->scene = &scene;
+  impl_->boxes = layers::mesh_boxes(scene);
   if (!layers::is_built(layers::Effect::Texture) || scene.textures.empty()) return;
   impl_->pyramids.resize(scene.textures.size());
   const bool filtered = layers::is_built(layers::Effect::MipFilter) && options.mipmaps &&

@@ -30,6 +30,7 @@ constexpr double kLookupSample = 3.0 / 8;  // place in a texel of the one sample
 struct Caster {
   const layers::Mesh* mesh = nullptr;
   std::vector<dvec3> world;
+  layers::Box3 box{};  ///< of `world`
 };
 
 bool casts(const layers::Scene& scene, const layers::Part& part) {
@@ -47,9 +48,10 @@ std::vector<Caster> casters_of(const layers::SceneFrame& frame, std::span<const 
     const layers::Part& part = frame.scene->parts[index];
     if (!casts(*frame.scene, part)) continue;
     const PartVertices vertices(frame, part, world);
-    Caster caster{&vertices.mesh(), {}};
+    Caster caster{&vertices.mesh(), {}, {}};
     caster.world.resize(vertices.size());
     for (int i = 0; i < vertices.size(); ++i) caster.world[i] = vertices.sprite_point(i);
+    caster.box = layers::box_of(caster.world);
     casters.push_back(std::move(caster));
   }
   return casters;
@@ -101,7 +103,14 @@ void cut_and_emit(const FaceView& face, const std::array<dvec3, 3>& points,
          triangles);
 }
 
+/// Does the caster lie outside of what the light sees through this face?
+bool is_out_of_sight(const FaceView& face, const Caster& caster) {
+  return !face.orthographic &&
+         layers::RegionTest(sprite_region(face.view), layers::reach_of({&caster.box, 1})).misses(caster.box);
+}
+
 void add_triangles(const FaceView& face, const Caster& caster, std::vector<Triangle>& triangles) {
+  if (is_out_of_sight(face, caster)) return;
   const std::vector<std::uint32_t>& indices = caster.mesh->indices;
   for (std::size_t i = 0; i + 2 < indices.size(); i += 3) {
     std::array<dvec3, 3> points;

@@ -103,6 +103,15 @@ std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, ivec2 dis
   return view;
 }
 
+layers::Region sprite_region(const SpriteView& view) {
+  const auto& [x, y, w] = view.sprite_from_world.row;
+  const double width = view.size_px.x, height = view.size_px.y;
+  layers::Region region;
+  for (const dvec4& side : {x, y, width * w - x, height * w - y, w}) region.push_back({dvec3(side), side.w});
+  region.back().offset -= view.region.near_w;
+  return region;
+}
+
 ProjectedVertex project(const SpriteView& view, const dvec3& p) {
   ProjectedVertex v;
   if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) {

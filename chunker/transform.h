@@ -16,6 +16,7 @@
 #include "chunker/clip.h"
 #include "chunker/rows34.h"
 #include "chunker/shade.h"
+#include "layers/region.h"
 
 namespace talisman::chunker {
 
@@ -35,6 +36,9 @@ struct SpriteView {
 std::optional<SpriteView> sprite_view(const layers::SceneFrame& frame, layers::ivec2 display_px,
                                       const layers::SpritePlacement& placement,
                                       const std::optional<HalfSpace>& kept = std::nullopt);
+
+/// What of the world the sprite shows: a part whose box is outside of it has no triangle that is not (layers/region.h).
+layers::Region sprite_region(const SpriteView& view);
 
 /// Why a vertex may need more than drawing. A triangle whose corners share one of kOutsideFlags lies wholly
 /// outside.

@@ -11,6 +11,7 @@
 #include "layers/built_effects.h"
 #include "layers/check.h"
 #include "layers/moving_picture.h"
+#include "layers/scene_at.h"
 
 namespace talisman::layers {
 
@@ -41,9 +42,7 @@ std::vector<dmat4> worlds_at(const Scene& scene, double t_s) {
   for (std::size_t i = 0; i < locals.size(); ++i) {
     const int parent = scene.nodes[i].parent;
     TALISMAN_CHECK_LT(parent, static_cast<int>(i));
-    const dmat4 above = parent < 0 ? dmat4(1) : worlds[parent];
-    const dmat4 world = above * locals[i].matrix();
-    worlds.push_back(finite(world) ? world : above);  // a product that overflows stays with its parent
+    worlds.push_back(world_of_node(parent < 0 ? dmat4(1) : worlds[parent], locals[i]));
   }
   return worlds;
 }
@@ -69,18 +68,24 @@ dmat4 rigid(const dmat4& m) {
   return {dvec4(right, 0), dvec4(glm::cross(back, right), 0), dvec4(back, 0), dvec4(dvec3(m[3]), 1)};
 }
 
+double morph_weight_at(const MorphTrack& track, std::size_t target, double at_s, double otherwise) {
+  const Keys<double>& keys = track.weights[target];
+  return keys.values.empty() ? otherwise : value_at(keys, looped(track, at_s));
+}
+
+}  // namespace
+
+dmat4 world_of_node(const dmat4& above, const Transform& local) {
+  const dmat4 world = above * local.matrix();
+  return finite(world) ? world : above;
+}
+
 CameraState camera_at(const Scene& scene, const std::vector<dmat4>& worlds) {
   if (scene.cameras.empty()) return {};
   const Camera& camera = scene.cameras.at(scene.active_camera);
   return {rigid(node_matrix(worlds, camera.node)), camera.fov_y_rad, camera.near_m, camera.far_m};
 }
 
-double morph_weight_at(const MorphTrack& track, std::size_t target, double at_s, double otherwise) {
-  const Keys<double>& keys = track.weights[target];
-  return keys.values.empty() ? otherwise : value_at(keys, looped(track, at_s));
-}
-
-/// Empty where no mesh has morph targets.
 std::vector<std::vector<double>> morph_weights_at(const Scene& scene, double t_s) {
   std::vector<std::vector<double>> weights;
   if (std::none_of(scene.meshes.begin(), scene.meshes.end(), [](const Mesh& m) { return !m.morphs.empty(); }))
@@ -111,8 +116,6 @@ LightState light_at(const Light& light, const std::vector<dmat4>& worlds) {
           light.attenuation,
           light.range_m};
 }
-
-}  // namespace
 
 dmat4 Transform::matrix() const {
   dmat4 m = glm::mat4_cast(unit(rotation));

@@ -188,12 +188,16 @@ void FrameCapture::capture_bounds(const Polyhedron& hull, const ViewHalfSpaces& 
   if (state.clipped && contains_nearest_point(state, hull)) state.nearest_w_m = state.camera.near_m;
 }
 
-void FrameCapture::capture(const Layer& layer, const LayerBound& bound, LayerState& state) const {
+void FrameCapture::leave_out(const Layer& layer, LayerState& state) const {
   forget(state);
   state.layer = layer.id;
   state.time_s = frame_.time_s;
   state.view = view_;
   state.camera = frame_.camera;
+}
+
+void FrameCapture::capture(const Layer& layer, const LayerBound& bound, LayerState& state) const {
+  leave_out(layer, state);
   append_part_matrices(frame_, layer.parts, state.world_from_part);
   if (is_built(Effect::MovingPicture)) add_shown_pictures(frame_, layer.parts, state.pictures);
   const bool any_light = is_built(Effect::Lighting) && !frame_.lights.empty();

@@ -125,6 +125,8 @@ class FrameCapture {
   /// `state` becomes that of `layer`, whatever it was; it keeps its memory, so that states which are used
   /// again allocate nothing.
   void capture(const Layer& layer, const LayerBound& bound, LayerState& state) const;
+  /// `state` becomes one out of view of which nothing else is known.
+  void leave_out(const Layer& layer, LayerState& state) const;
 
  private:
   void capture_points(const LayerBound& bound, LayerState& state) const;

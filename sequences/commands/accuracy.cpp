@@ -7,6 +7,7 @@
 #include "sequences/commands/accuracy_hard.h"
 #include "sequences/commands/accuracy_regulator.h"
 #include "sequences/commands/accuracy_renderer.h"
+#include "sequences/commands/culling/accuracy_culling.h"
 #include "sequences/commands/motion/accuracy_amortised.h"
 #include "sequences/commands/motion/accuracy_latency.h"
 #include "sequences/commands/motion/accuracy_predictive.h"
@@ -42,6 +43,8 @@ constexpr SequenceExperiment kSequenceExperiments[] = {
     {"--predictive", &AccuracyOptions::predictive, run_predictive_accuracy},
     {"--amortised", &AccuracyOptions::amortised, run_amortised_accuracy},
     {"--latency", &AccuracyOptions::latency, run_latency_accuracy},
+    {"--culling", &AccuracyOptions::culling, run_culling_accuracy},
+    {"--visibility", &AccuracyOptions::visibility, run_visibility_accuracy},
 };
 
 /// The one experiment that is asked for; null: --solvers or --hard.

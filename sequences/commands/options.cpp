@@ -15,6 +15,7 @@
 #include "sequences/content/own_settings.h"
 #include "sequences/content/value_type.h"
 #include "sequences/files/terminal_text.h"
+#include "sequences/pipeline/culling/culling.h"
 #include "sequences/pipeline/predictive/plan_buffers.h"
 
 namespace talisman::sequences {
@@ -158,6 +159,29 @@ T chosen(const char* option, const std::string& text, const Words<T, N>& words, 
   return text.empty() ? otherwise : choice(option, text, words);
 }
 
+/// What is looked at and drawn at all. What the sequence says yields to a policy that cannot do it; an option does not.
+void apply_visibility(const CommandLine& line, const Sequence& sequence, Settings& settings) {
+  if (!line.visibility.empty()) {
+    const std::optional<VisibilityOptions> asked = visibility_from(line.visibility);
+    if (!asked) throw InputError("--visibility is '" + line.visibility + "', must be " + kVisibilityRule);
+    settings.visibility = *asked;
+  }
+  const std::string is = "visibility is " + text_of(settings.visibility);
+  if (settings.visibility.needs_cells() && !settings.cells)
+    throw InputError(is + ", rule: only none,none,frustum without `cells`", sequence.file);
+  for (const layers::Layer& layer : sequence.layers.layers)
+    if (settings.visibility.needs_cells() && !layer.fade.values.empty())
+      throw InputError(is + ", but layer '" + layer.name +
+                           "' fades, rule: cells hide nothing behind what can be seen through",
+                       sequence.file);
+  const regulator::Policy policy = settings.regulator.policy;
+  if (!settings.visibility.any() || allows_culling(policy)) return;
+  if (!line.visibility.empty())
+    throw InputError(is + ", but the policy is " + std::string(regulator::name(policy)) +
+                     ", must be direct, reference, threshold or budget");
+  settings.visibility = {};
+}
+
 /// How layers are bounded, ordered and put together.
 void apply_order(const CommandLine& line, const Sequence& sequence, Settings& settings) {
   settings.bound = chosen("--bound", line.bound, kBoundWords, sequence.bound);
@@ -168,6 +192,7 @@ void apply_order(const CommandLine& line, const Sequence& sequence, Settings& se
   settings.cycles = chosen("--cycles", line.cycles, kCyclesWords, sequence.cycles);
   settings.compositor = chosen("--compositor", line.compositor, kCompositorWords, sequence.compositor);
   settings.late_chunks = chosen("--late-chunks", line.late_chunks, kSwitchWords, settings.late_chunks);
+  apply_visibility(line, sequence, settings);
   if (settings.compositor == Compositor::Extended) return;
   for (const layers::Layer& layer : sequence.layers.layers)
     if (layer.shadows_as && layers::needs_registers(*layer.shadows_as))

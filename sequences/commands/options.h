@@ -34,6 +34,7 @@ struct CommandLine {
   std::optional<double> geometric_px, cutoff_px, budget_ms, min_resolution, expected_reuse, resolution;
   std::optional<double> photometric, light_angle_deg, turned_px, shadow_map_px, depth_complexity;
   std::string color_warp, stagger, late_chunks;  ///< "on", "off"
+  std::string visibility;                        ///< "cto,eye,eye"
   std::string joining, motion_norm;
   std::string regroup, regroup_prices;
   std::optional<double> regroup_ceiling_ms;

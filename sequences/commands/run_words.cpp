@@ -144,6 +144,10 @@ void add_layers(CLI::App& command, CommandLine& line) {
               "talisman: over only; extended: also out and plus with two image registers, so that layers "
               "that go round are not merged unless two of them meet",
               std::string(word_of(usual.compositor, kCompositorWords)))
+      .option("--visibility", line.visibility,
+              "what is not looked at: PRE,CELL,OBJECT, each none, or ctc or cto; frustum or eye; all but "
+              "none,none,frustum need `cells`",
+              text_of(VisibilityOptions()))
       .option("--expected-reuse", line.expected_reuse, "frames for which clipped sprites are enlarged",
               shown(usual.extents.expected_reuse_frames));
 }

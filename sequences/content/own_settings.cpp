@@ -17,6 +17,8 @@ Settings own_settings(const Sequence& sequence) {
   settings.extents = sequence.extents;
   settings.placement = sequence.placement;
   settings.compression = sequence.compression;
+  settings.visibility = sequence.visibility;
+  settings.cells = sequence.cells;
   settings.fps = sequence.fps;
   settings.frames = sequence.frames;
   return settings;

@@ -323,6 +323,8 @@ BuiltScene build_scene(const SceneRecipe& recipe) {
   for (const ModelRecipe& model : recipe.models) add_model(built, model, recipe.assets);
   add_images_in_world(built, recipe.images, recipe.times);
   if (recipe.swarm) add_swarm(built.scene, *recipe.swarm, recipe.times.fps, recipe.times.last_s());
+  if (recipe.building) built.cells = add_building(built.scene, *recipe.building);
+  add_cells(recipe.cells, recipe.portals, built.cells);
   if (recipe.camera) add_camera(built, *recipe.camera, recipe.turntable_s);
   add_lights(built, recipe.lights);
   add_default_view(built.scene, recipe.turntable_s);

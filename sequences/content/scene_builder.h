@@ -27,7 +27,8 @@ struct BuiltScene {
   std::vector<std::string> files = {};          ///< that were opened for it: Sequence::content_files
   std::map<std::string, int> carriers = {};     ///< the node of each shape and image, by its name
   std::vector<ModelCamera> model_cameras = {};  ///< of which the recipe may choose one
-  double last_s = 0;  ///< time of the sequence's last frame: so much of traces is read
+  double last_s = 0;           ///< time of the sequence's last frame: so much of traces is read
+  layers::CellSet cells = {};  ///< without a defect
 };
 
 /// The node, with its motion, that carries something; throws InputError for a carrier that is not there and a trace that

@@ -68,7 +68,15 @@ const Table<SceneRecipe>& scene_keys() {
           .key("terrain", &S::terrain, map_of(terrain_keys()), "", "ground out of pictures")
           .key("sky", &S::sky, map_of(sky_keys()), "", "one part, unlit")
           .key("swarm", &S::swarm, map_of(swarm_keys()), "", "many small things that move for themselves")
-          .at_least_one_of({"shapes", "models", "images", "terrain", "sky", "swarm"}, "it shows nothing")
+          .key("building", &S::building, map_of(building_keys()), "",
+               "rooms along corridors around an atrium, with furniture, cells and portals")
+          .at_least_one_of({"shapes", "models", "images", "terrain", "sky", "swarm", "building"},
+                           "it shows nothing")
+          .key("cells", &S::cells, list_of(cell_keys()), "",
+               "boxes whose faces nobody sees through, but where a portal is")
+          .otherwise("none, or those of the building")
+          .key("portals", &S::portals, list_of(portal_keys()), "", "the holes between cells")
+          .otherwise("none, or those of the building")
           .key("camera", &S::camera, map_of(camera_keys()), "", "from where it is seen")
           .otherwise("an orbit around everything")
           .key("turntable", &S::turntable_s, number(kPositive), "s",

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "sequences/content/culling/building.h"
+#include "sequences/content/culling/cell_keys.h"
 #include "sequences/content/ground.h"
 #include "sequences/content/images/image_recipe.h"
 #include "sequences/content/lights.h"
@@ -62,6 +64,9 @@ struct SceneRecipe {
   std::optional<TerrainContent> terrain;
   std::optional<SkyContent> sky;
   std::optional<SwarmContent> swarm;
+  std::optional<BuildingContent> building;
+  std::vector<CellRecipe> cells;  ///< beside those of the building
+  std::vector<PortalRecipe> portals;
   std::optional<CameraRecipe> camera;
   std::vector<LightRecipe> lights;
   layers::vec3 background{0, 0, 0};
@@ -70,7 +75,7 @@ struct SceneRecipe {
   double turntable_s = 5;           ///< one turn of the orbiting camera, where there is no other
 };
 
-/// The keys background, shapes, models, images, assets, terrain, sky, swarm, camera, turntable, lights and exposure of a sequence.
+/// The keys background, shapes, models, images, assets, terrain, sky, swarm, building, cells, portals, camera, turntable, lights and exposure of a sequence.
 const Table<SceneRecipe>& scene_keys();
 
 }  // namespace talisman::sequences

@@ -77,6 +77,8 @@ void finish(Sequence& sequence, BuiltScene built, std::vector<layers::LayerSpec>
                                                    : " parts are taken by no layer and are not drawn: ") +
                                 quoted(parts));
   sequence.scene = std::make_shared<const layers::Scene>(std::move(built.scene));
+  if (!built.cells.cells.empty())
+    sequence.cells = std::make_shared<const layers::CellSet>(std::move(built.cells));
 }
 
 /// The place of the layer that a defect speaks of; the defect begins with "layer 'NAME'".
@@ -134,8 +136,9 @@ Sequence load_yaml(const std::string& path, const ContentOptions& options) {
   if (const std::string defect = layers::first_defect(built.scene); !defect.empty())
     throw InputError(defect, path);
   if (built.scene.parts.empty())
-    throw InputError("shows nothing, rule: at least one of shapes, models, images, terrain, sky and swarm",
-                     path);
+    throw InputError(
+        "shows nothing, rule: at least one of shapes, models, images, terrain, sky, swarm and building",
+        path);
   std::vector<layers::LayerSpec> specs;
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   Sequence sequence = std::move(file.settings);

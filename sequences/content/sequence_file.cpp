@@ -92,6 +92,12 @@ Table<SequenceFile> film_keys() {
       .otherwise("none");
 }
 
+void read_visibility(const YamlValue& value, SequenceFile& file) {
+  const std::optional<VisibilityOptions> options = visibility_from(value.text());
+  if (!options) value.fail(kVisibilityRule);
+  file.settings.visibility = *options;
+}
+
 Table<SequenceFile> pipeline_keys() {
   using enum layers::BoundKind;
   std::vector<std::string> curves;
@@ -106,6 +112,11 @@ Table<SequenceFile> pipeline_keys() {
       .key("compositor", setting(&Sequence::compositor),
            choice<Compositor>({{"talisman", Compositor::Talisman}, {"extended", Compositor::Extended}}), "",
            "its operators: `over` alone, or more")
+      .custom("visibility", text().type, read_visibility, "",
+              "`PRE,CELL,OBJECT`: which tests decide what is looked at and drawn at all; all but "
+              "`none,none,frustum` need "
+              "`cells`")
+      .otherwise("`none,none,none`")
       .key("regulator", setting(&Sequence::regulator), map_of(regulator_keys()), "",
            "what decides which sprites are drawn again")
       .key("warp", setting(&Sequence::warp), one_of(curves), "",

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "fiducials/fiducials.h"
+#include "layers/advance.h"
 #include "layers/built_effects.h"
 #include "layers/moving_picture.h"
 #include "layers/predict.h"
@@ -13,6 +14,7 @@
 #include "regulator/policies.h"
 #include "regulator/resolution.h"
 #include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/culling/culling.h"
 #include "sequences/pipeline/light_planning.h"
 #include "sequences/pipeline/motion_blur.h"
 #include "sequences/pipeline/shadow_map_planning.h"
@@ -88,7 +90,7 @@ SpritePlacement place_regulated(const Pipeline& pipeline, PipelineState& state, 
   const LayerState& now = captured_states(pipeline, state, frame)[layer];
   const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
   if (!(expected_reuse > 0)) return place_layer(pipeline, state.layers, now, now, 0, resolution);
-  return place_layer(pipeline, state.layers, now, captured_states(pipeline, state, frame + 1)[layer],
+  return place_layer(pipeline, state.layers, now, captured_motion(pipeline, state, layer, frame + 1),
                      expected_reuse, resolution);
 }
 
@@ -122,6 +124,13 @@ double time_of(const Pipeline& pipeline, int frame) { return frame / pipeline.se
 
 SceneFrame scene_at(const Pipeline& pipeline, int frame) {
   return pipeline.scene.at(time_of(pipeline, frame));
+}
+
+const SceneFrame& scene_now(const Pipeline& pipeline, PipelineState& state, int frame) {
+  if (state.walked_by != pipeline.motion) state.walked = {};  // of another scene, perhaps
+  state.walked_by = pipeline.motion;
+  pipeline.motion->advance(state.walked, time_of(pipeline, frame));
+  return state.walked;
 }
 
 SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame) {
@@ -187,6 +196,7 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
   state.planned_with = pipeline.settings.regulator;
   if (state.beat && !continues(pipeline, *state.beat, frame)) state.beat.reset();
   state.now = frame;
+  forget_seen(state);
   state.motion.reset();
   if (predicts(pipeline)) {
     SceneFrame now = scene_at(pipeline, frame);
@@ -197,25 +207,45 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
   if (policy != Policy::Lookahead) forget(state, captured.upper_bound(frame + 1), captured.end());
 }
 
+namespace {
+
+void capture_layer(const LayerTable& table, const Layer& layer, const layers::FrameCapture& capture,
+                   std::vector<LayerState>& states) {
+  if (layer.base >= 0 && layer.kind != layers::LayerKind::Light)  // which is lit by a light of its own
+    states[layer.id] = layers::shade_state(states[layer.base], layer);
+  else
+    capture.capture(layer, table.bound(layer.id), states[layer.id]);
+}
+
+}  // namespace
+
 const std::vector<LayerState>& captured_states(const Pipeline& pipeline, PipelineState& state, int frame) {
   CapturedFrame& captured = captured_frame(state, frame);
   if (captured.generation == state.order.generation) return captured.states;
   captured.generation = state.order.generation;
   captured.states.resize(state.layers.size());
   captured.placements.resize(captured.states.size());
-  std::optional<layers::SceneFrame> scene_frame;  // evaluated only if something is missing
+  const SeenParts* const seen = seen_at(pipeline, state, frame);
+  captured.culled.assign(seen ? captured.states.size() : 0, 0);
+  std::optional<layers::SceneFrame> expected;
+  const SceneFrame* scene_frame = nullptr;  // evaluated only if something is missing
   std::optional<layers::FrameCapture> capture;
   for (const Layer& layer : state.layers) {
     LayerState& layer_state = captured.states[layer.id];
+    const bool is_culled = seen && !layer.is_aggregate() && !seen->layer[layer.id];
+    if (is_culled) captured.culled[layer.id] = 1;
     if (layer_state.layer == layer.id || !exists_now(state, layer.id)) continue;
     if (!scene_frame) {
-      scene_frame = scene_as_known(pipeline, state, frame);
+      if (state.motion && frame > state.motion->frame) expected = scene_as_known(pipeline, state, frame);
+      scene_frame = expected ? &*expected : &scene_now(pipeline, state, frame);
       capture.emplace(*scene_frame, pipeline.settings.view);
     }
-    if (layer.base >= 0 && layer.kind != layers::LayerKind::Light)  // which is lit by a light of its own
-      layer_state = layers::shade_state(captured.states[layer.base], layer);
-    else
-      capture->capture(layer, state.layers.bound(layer.id), layer_state);
+    if (is_culled && !pipeline.culling->is_looked_at(layer.id)) {
+      capture->leave_out(layer, layer_state);
+      continue;
+    }
+    capture_layer(state.layers, layer, *capture, captured.states);
+    if (is_culled) hide(layer_state);
   }
   if (!scene_frame) return captured.states;
   if (any_shutter_open(state.layers))
@@ -225,6 +255,18 @@ const std::vector<LayerState>& captured_states(const Pipeline& pipeline, Pipelin
   if (any_shadows(state.layers.set())) captured.lights = scene_frame->lights;
   captured.shadow_maps = shadow_map_keys(pipeline.scene, state.layers.set(), *scene_frame);
   return captured.states;
+}
+
+const LayerState& captured_motion(const Pipeline& pipeline, PipelineState& state, int layer, int frame) {
+  captured_states(pipeline, state, frame);
+  CapturedFrame& captured = state.captured.at(frame);
+  LayerState& layer_state = captured.states[layer];
+  if (captured.culled.empty() || !captured.culled[layer] || pipeline.culling->is_looked_at(layer))
+    return layer_state;
+  layers::FrameCapture(scene_now(pipeline, state, frame), pipeline.settings.view)
+      .capture(state.layers[layer], state.layers.bound(layer), layer_state);
+  hide(layer_state);
+  return layer_state;
 }
 
 const SpritePlacement& captured_placement(const Pipeline& pipeline, PipelineState& state, int layer,

@@ -28,6 +28,8 @@ layers::SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState&
 /// The scene at `frame` as it is known or, where frames ahead are predicted, as it is expected in frame
 /// `known` ≤ `frame` from that frame and the one before.
 layers::SceneFrame scene_at(const Pipeline& pipeline, int frame);
+/// The same, at the cost of what moved since the last call; the reference holds until the next one.
+const layers::SceneFrame& scene_now(const Pipeline& pipeline, PipelineState& state, int frame);
 layers::SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame);
 
 /// Makes `frame` the frame that is planned, under this pipeline: forgets what is past, what was only
@@ -39,6 +41,10 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame);
 /// captured if they exist in the frame that was ordered last. The reference holds until aggregates are made.
 const std::vector<layers::LayerState>& captured_states(const Pipeline& pipeline, PipelineState& state,
                                                        int frame);
+
+/// The state of one layer where a motion is asked for: captured also where the layer is not seen.
+const layers::LayerState& captured_motion(const Pipeline& pipeline, PipelineState& state, int layer,
+                                          int frame);
 
 /// Where the layer's sprite lies if it is rendered at the instant of `frame`. Extents grow only where the
 /// sprite is to be moved later. Computed once for each instant.

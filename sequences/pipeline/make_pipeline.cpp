@@ -3,15 +3,23 @@
 
 #include <utility>
 
+#include "layers/advance.h"
 #include "layers/animation.h"
 #include "layers/effects.h"
 #include "layers/polyhedron.h"
+#include "sequences/pipeline/culling/culling.h"
 #include "sequences/pipeline/light_planning.h"
 
 namespace talisman::sequences {
 
 Pipeline make_pipeline(const layers::Scene& scene, layers::LayerSet layers, const Settings& settings) {
-  Pipeline pipeline{scene, settings, {}, {}, layers::calls_for_visibility_sort(layers.layers)};
+  Pipeline pipeline{scene,
+                    settings,
+                    {},
+                    {},
+                    layers::calls_for_visibility_sort(layers.layers),
+                    std::make_shared<const layers::SceneMotion>(scene),
+                    nullptr};
   if (regulator::follows_light(settings.regulator)) pipeline.moving_carriers = layers::moving_carriers(scene);
   BoundTable bounds;
   for (const layers::Layer& layer : layers.layers)
@@ -19,6 +27,8 @@ Pipeline make_pipeline(const layers::Scene& scene, layers::LayerSet layers, cons
                                                    layers::make_layer_bound(scene, layer, settings.bound,
                                                                             settings.material_points)));
   pipeline.authored = {std::move(layers), std::move(bounds)};
+  if (settings.visibility.any())
+    pipeline.culling = std::make_shared<const Culling>(scene, pipeline.authored, settings);
   return pipeline;
 }
 

@@ -15,6 +15,8 @@
 #include "layers/sprite_transform.h"
 #include "layers/state.h"
 #include "regulator/plan.h"
+#include "sequences/pipeline/culling/unshared.h"
+#include "sequences/pipeline/culling/visibility.h"
 #include "sequences/pipeline/frame_order.h"
 #include "sequences/pipeline/layer_table.h"
 #include "sequences/pipeline/order_memory.h"
@@ -22,6 +24,11 @@
 #include "sequences/pipeline/shade_memory.h"
 #include "sequences/pipeline/sprite_compression.h"
 #include "warp/fit.h"
+
+namespace talisman::layers {
+struct CellSet;     // layers/cells.h
+class SceneMotion;  // layers/advance.h
+}  // namespace talisman::layers
 
 namespace talisman::sequences {
 
@@ -52,7 +59,13 @@ struct Settings {
   /// hardware of [LS97] would. Without effect where all of a sprite is looked at: compression, fades of fresh
   /// sprites.
   bool late_chunks = false;
+  /// Which tests decide what is looked at and drawn at all. More of them leave less to draw, and cost time.
+  VisibilityOptions visibility;
+  std::shared_ptr<const layers::CellSet> cells;  ///< of the scene; null: it has none
 };
+
+class Culling;  // sequences/pipeline/culling/culling.h
+struct CullingMemory;
 
 /// What does not change during a run. Made by make_pipeline (sequences/pipeline/make_pipeline.h). It refers to
 /// the scene, which must outlive it; all else is its own.
@@ -62,6 +75,8 @@ struct Pipeline {
   LayerTable authored;               ///< the author's layers; those of a frame are in its state
   std::vector<int> moving_carriers;  ///< by node (layers/animation.h); empty unless light is followed
   bool sorts_visibility = false;     ///< the effect visibility_sort is called for
+  std::shared_ptr<const layers::SceneMotion> motion;
+  std::shared_ptr<const Culling> culling;  ///< null where Settings::visibility asks for nothing
 };
 
 /// Since when is a layer at rest (regulator/settle.h)? Kept only where the regulator asks for it.
@@ -92,6 +107,7 @@ struct LayerMemory {
 struct CapturedFrame {
   std::vector<layers::LayerState> states;                          ///< by layer id
   std::vector<std::optional<layers::SpritePlacement>> placements;  ///< by layer id
+  std::vector<char> culled;  ///< by layer id: not seen, and so not captured; empty where nothing is culled
   int generation = -1;  ///< OrderMemory::generation: aggregates that exist since then are not captured yet
   std::vector<ShadowMapKey> shadow_maps;   ///< by light; empty where no shadow is called for
   std::vector<layers::LightState> lights;  ///< of the scene
@@ -140,6 +156,9 @@ struct PipelineState {
   std::vector<ShadowMapMemory> maps;  ///< by light; empty where no shadow is called for
   ShadePlan reference_shades;         ///< of the policy `reference`: the yardstick of what is saved
   ShadowMapStore shadow_maps;
+  layers::SceneFrame walked;  ///< the scene as it was evaluated last, by `walked_by` (layers/advance.h)
+  std::shared_ptr<const layers::SceneMotion> walked_by;
+  Unshared<CullingMemory> culling;
   DepthMemory depth;
   std::vector<int> uploaded;  ///< by moving picture: the frame that the texture memory holds, or -1
   std::map<int, CapturedFrame> captured;  ///< by frame: this one and those looked at ahead, each once

@@ -69,7 +69,7 @@ chunker::LightsHeld lights_of(const Layer& layer) {
 std::vector<const chunker::ShadowMap*> maps_for(const Drawing& drawing, const std::vector<int>& lights) {
   std::vector<const chunker::ShadowMap*> by_light;
   if (lights.empty()) return by_light;
-  const auto& [pipeline, layers, maps, prepared, frame, held] = drawing;
+  const auto& [pipeline, layers, maps, prepared, frame, held, seen] = drawing;
   const std::vector<ShadowMapKey> keys = shadow_map_keys(pipeline.scene, layers.set(), frame);
   by_light.resize(keys.size(), nullptr);
   for (const int light : lights) {
@@ -117,7 +117,7 @@ struct Mirrored {
 };
 
 Mirrored draw_mirrored(const Drawing& drawing, const Layer& layer, const SpritePlacement& placement) {
-  const auto& [pipeline, layers, maps, prepared, frame, held] = drawing;
+  const auto& [pipeline, layers, maps, prepared, frame, held, seen] = drawing;
   Mirrored mirrored;
   const WorldPlane mirror = mirror_of(frame, layer);
   if (placement.empty() || !std::isfinite(mirror.height({0, 0, 0}))) return mirrored;
@@ -314,7 +314,9 @@ std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const Layer& 
 chunker::RenderResult draw_in_one_pass(const Drawing& drawing, std::span<const int> geometry_layers,
                                        const SpritePlacement& placement) {
   Contents contents = all_terms_of(drawing.layers.set(), geometry_layers, drawing.frame.time_s);
-  std::erase_if(contents.parts, [&](int part) { return drawing.frame.scene->parts[part].is_seam; });
+  std::erase_if(contents.parts, [&](int part) {
+    return drawing.frame.scene->parts[part].is_seam || (drawing.seen && !(*drawing.seen)[part]);
+  });
   return draw(drawing, contents, placement);
 }
 

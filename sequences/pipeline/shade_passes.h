@@ -34,6 +34,8 @@ struct Drawing {
   const chunker::PreparedScene& prepared;
   const layers::SceneFrame& frame;
   std::span<const HeldMap> held = {};  ///< lights whose maps are not simply those of `frame`
+  const std::vector<char>* seen =
+      nullptr;  ///< by part, of the display at `frame`: the others are not drawn; null: all are
 };
 
 /// The layer's term of the shading through `placement`. The counters are those of the sprite and of the
@@ -56,7 +58,7 @@ std::vector<chunker::TermImage> draw_terms(const Drawing& drawing, const layers:
                                            const layers::SpritePlacement& placement,
                                            chunker::BasePasses base);
 
-/// The given geometry layers in one pass, all terms of their shading at once, and their textures blended as
+/// The given geometry layers in one pass, as far as their parts are seen, all terms of their shading at once, and their textures blended as
 /// of the drawing's frame. Fades are left to the compositor: sequences/pipeline/direct_picture.h.
 chunker::RenderResult draw_in_one_pass(const Drawing& drawing, std::span<const int> geometry_layers,
                                        const layers::SpritePlacement& placement);

@@ -12,6 +12,7 @@
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/blended_sprites.h"
 #include "sequences/pipeline/cross_fading.h"
+#include "sequences/pipeline/culling/culling.h"
 #include "sequences/pipeline/depth_complexity.h"
 #include "sequences/pipeline/direct_picture.h"
 #include "sequences/pipeline/draw_instant.h"
@@ -363,8 +364,10 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
   chunker::CompositeResult result;
   const Stopwatch render_watch;
   if (pipeline.settings.regulator.policy == regulator::Policy::Direct) {
-    DirectPicture picture =
-        draw_directly({pipeline, pipeline.authored, state.shadow_maps, prepared, now}, report.frame);
+    const SeenParts* const seen = seen_at(pipeline, state, report.frame);
+    DirectPicture picture = draw_directly(
+        {pipeline, pipeline.authored, state.shadow_maps, prepared, now, {}, seen ? &seen->part : nullptr},
+        report.frame);
     result = std::move(picture.composite);
     report.render += picture.render;
     report.times.render_ms = render_watch.ms();
@@ -385,6 +388,16 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
   report.picture = std::move(result.frame);
   report.composite = result.counters;
   report.sprite_bytes = bytes_shown(state, report);
+}
+
+/// Why layers that were not even looked at are not shown.
+void explain_culling(const Pipeline& pipeline, PipelineState& state, FrameReport& report) {
+  const std::vector<char>& culled = state.captured.at(report.frame).culled;
+  if (culled.empty()) return;
+  const SeenParts& seen = *seen_at(pipeline, state, report.frame);
+  for (regulator::LayerDecision& decision : report.plan.decisions)
+    if (culled[decision.layer] && decision.action == Action::Drop)
+      decision.reason = why_culled(seen, decision.layer);
 }
 
 }  // namespace
@@ -427,11 +440,12 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   if (regulator::regroups(options)) regroup(pipeline, state, report);
   const Fades fades = carry_fades(pipeline, state, report);
   explain_order(report);
+  explain_culling(pipeline, state, report);
   report.shown = sprites_shown(pipeline, state, fades, report);
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.
-  if (prepared) draw(pipeline, state, scene_at(pipeline, frame), *prepared, report);
+  if (prepared) draw(pipeline, state, scene_now(pipeline, state, frame), *prepared, report);
   return report;
 }
 
@@ -444,6 +458,7 @@ chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::P
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
   Pipeline reference = pipeline;
   reference.settings.regulator.policy = regulator::Policy::Reference;
+  reference.culling = nullptr;
   PipelineState fresh(reference);
   return step(reference, fresh, frame, &prepared).picture;
 }

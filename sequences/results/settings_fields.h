@@ -113,7 +113,9 @@ void render(RenderOptions& options, const Visit& visit) {
 template <typename AnySettings, typename Visit>
 void for_each_setting(AnySettings& settings, const Visit& visit) {
   auto& [regulator, curve, own_warps, fit, view, bound, material_points, extents, placement, render,
-         compression, explicit_order, cycles, compositor, fps, frames, budget_gap, late_chunks] = settings;
+         compression, explicit_order, cycles, compositor, fps, frames, budget_gap, late_chunks, visibility,
+         cells] = settings;
+  static_cast<void>(cells);  // content: its files are part of the identity
   auto& [display, clip_margin] = view;
   visit("display_px", display);
   visit("clip_margin", clip_margin);
@@ -133,6 +135,7 @@ void for_each_setting(AnySettings& settings, const Visit& visit) {
   visit("sequence_frames", frames);
   visit("budget_gap", budget_gap);
   visit("late_chunks", late_chunks);
+  visit("visibility", visibility);
 }
 
 }  // namespace talisman::sequences

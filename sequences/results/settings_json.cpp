@@ -66,6 +66,8 @@ Json setting_value(chunker::TextureFilter filter) {
 }
 
 Json setting_value(Cycles cycles) { return cycles == Cycles::Merge ? "merge" : "keep"; }
+Json setting_value(const VisibilityOptions& visibility) { return text_of(visibility); }
+
 Json setting_value(Compositor compositor) {
   return compositor == Compositor::Talisman ? "talisman" : "extended";
 }

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+/// `talisman accuracy --culling SEQUENCE`: which structure finds what is in view in the least time
+/// (experiments/culling/measured.h). `--visibility SEQUENCE`: what each triple of tests leaves and costs
+/// (experiments/culling/visibility.h).
+
+#include <iosfwd>
+#include <string>
+
+#include "sequences/commands/experiment_options.h"
+
+namespace talisman::sequences {
+
+/// Reads the sequence, measures, writes into the folder `dir` and prints. Throws InputError and OutputError.
+int run_culling_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out);
+
+/// Likewise. Exit code 1 where a picture differs.
+int run_visibility_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out);
+
+}  // namespace talisman::sequences

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// --visibility, the keys of cells, and what finding what can be seen costs, as a user meets them.
+#include <string>
+
+#include "tests/sequences/commands/tool.h"
+
+namespace talisman {
+namespace {
+
+using ::testing::HasSubstr;
+
+const std::string kSmall = " --frames 0-3 --size 64x48 --progress none";
+
+/// Two rooms with a box in each, and a door between them; the camera looks through it.
+const std::string kTwoRooms = R"(frames: 4
+display: [64, 48]
+shapes:
+  - {id: near, box: [1, 1, 1], position: [2, 1, 1]}
+  - {id: far, box: [1, 1, 1], position: [6, 1, 3.4]}
+camera: {position: [1, 1.5, 3], look_at: [8, 1, 1]}
+regulator: {policy: direct}
+cells:
+  - {name: hall, lo: [0, 0, 0], hi: [4, 3, 4]}
+  - {name: store, lo: [4, 0, 0], hi: [8, 3, 4]}
+portals:
+  - {from: hall, to: store, corners: [[4, 0, 1], [4, 2, 1], [4, 2, 2], [4, 0, 2]]}
+)";
+
+class Visibility : public Tool {
+ protected:
+  void expect_refused(const std::string& from, const std::string& to, const std::string& line,
+                      const std::string& what) {
+    std::string text = kTwoRooms;
+    text.replace(text.find(from), from.size(), to);
+    write("bad.yaml", text);
+    expect_bad_input("plan bad.yaml" + kSmall, {"bad.yaml:" + line, what, "rule: "});
+  }
+};
+
+TEST_F(Visibility, BadCellsAndPortalsAreRefusedWithTheirLine) {
+  expect_refused("name: store", "name: hall", "10:", "named twice");
+  expect_refused("lo: [4, 0, 0]", "lo: [3, 0, 0]", "10:", "overlap");
+  expect_refused("hi: [8, 3, 4]", "hi: [4, 3, 4]", "10:", "inside out along x");
+  expect_refused("to: store", "to: stor", "12:", "'stor' is no cell");
+  expect_refused("to: store", "to: hall", "12:", "one cell twice");
+  expect_refused("[4, 2, 2]", "[4.1, 2, 2]", "12:", "off the shared face");
+  expect_refused("[4, 2, 2]", "[4, 3.5, 2]", "12:", "outside of 'hall' or 'store'");
+  expect_refused("[4, 2, 2]", "[4, 0.2, 1.1]", "12:", "not convex");
+  expect_refused("portals:", "visibility: cto,frustum,eye\nportals:", "11:", "visibility");
+}
+
+TEST_F(Visibility, TriplesThatCannotBeAreRefused) {
+  write("rooms.yaml", kTwoRooms);
+  for (const std::string bad : {"eye", "cto,eye", "none,frustum,eye", "cto,eye,eye,eye"})
+    expect_bad_input("plan rooms.yaml --visibility " + bad + kSmall,
+                     {"--visibility is '" + bad + "', must be PRE,CELL,OBJECT"});
+  for (const std::string policy : {"hold", "interpolate", "lookahead", "oracle"})
+    expect_bad_input("plan rooms.yaml --visibility cto,eye,eye --policy " + policy + kSmall,
+                     {"visibility is cto,eye,eye, but the policy is " + policy});
+  std::string without = kTwoRooms.substr(0, kTwoRooms.find("cells:"));
+  write("without.yaml", without);
+  expect_bad_input("plan without.yaml --visibility cto,eye,eye" + kSmall,
+                   {"only none,none,frustum without `cells`"});
+}
+
+TEST_F(Visibility, AllTriplesAreMeasuredAndShowTheSame) {
+  write("rooms.yaml", kTwoRooms);
+  const Outcome outcome =
+      run("accuracy --visibility rooms.yaml --frames 0-3 --size 64x48 --progress none --out o");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("cto,eye,eye"));
+  EXPECT_THAT(outcome.output, HasSubstr("2 cells, 1 portals"));
+  const std::string csv = read("o/visibility.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 22);
+}
+
+TEST_F(Visibility, StructuresAreMeasured) {
+  write("rooms.yaml", kTwoRooms);
+  const Outcome outcome =
+      run("accuracy --culling rooms.yaml --frames 0-1 --size 64x48 --progress none --out o");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(read("o/culling.csv"), HasSubstr("loose octree"));
+}
+
+}  // namespace
+}  // namespace talisman
