@@ -213,7 +213,8 @@ class ShardMerger {
 
   void link_pictures(const ShardFile& shard) const {
     const std::string from = shard_folder(out_, shard.shard);
-    for (const auto& [name, hash] : shard.files) {
+    for (const auto& file : shard.files) {
+      const std::string& name = file.first;
       const bool is_picture = name.rfind("frames/", 0) == 0 || name.rfind("separate/", 0) == 0;
       if (!is_picture || name.find("..") != std::string::npos) continue;
       const std::string to = out_ + "/" + name;
@@ -230,7 +231,7 @@ class ShardMerger {
   /// Writes NAME.partial out of those of the shards. The path of NAME; empty where none of them has it.
   std::string joined_lines(const std::string& name) const {
     std::unique_ptr<OutputFile> to;
-    const std::string path = out_ + "/" + name;
+    std::string path = out_ + "/" + name;
     for (const ShardFile& shard : shards_) {
       if (!shard.files.contains(name)) continue;
       if (!to) to = std::make_unique<OutputFile>(path + kPartial, path, O_WRONLY | O_CREAT | O_TRUNC);

@@ -41,7 +41,14 @@ TEST_F(Inspect, BadInputIsOneLine) {
     expect_bad_input(command + " empty", {"'empty' is a folder"});
   expect_bad_input("inspect nothing.glb --parts", {"nothing.glb"});
   expect_bad_input("inspect carousal --parts", {"did you mean 'carousel'"});
-  expect_bad_input("inspect cube.obj --parts --order", {"--parts, --order and --factoring"});
+  expect_bad_input("inspect cube.obj --format tum",
+                   {"--format, --joint, --fps and --scale", "must come with --motion"});
+  write("letters.tum", "0 0 0 0 0 0 0 1\nnothing\n");
+  expect_bad_input("inspect --motion letters.tum",
+                   {"letters.tum:2: has 1 words, rule: t tx ty tz qx qy qz qw"});
+  expect_bad_input("inspect --motion letters.tum --format tim",
+                   {"--format is 'tim', rule: one of tum, euroc"});
+  expect_bad_input("inspect cube.obj --parts --order", {"--parts, --order, --factoring and --motion"});
   expect_bad_input("inspect cube.obj --out a.png", {"--out", "--parts"});
   expect_bad_input("inspect cube.obj --parts --out a.jpg", {"--out is 'a.jpg'", ".png"});
   expect_bad_input("inspect cube.obj --cycles keep", {"--cycles", "--order"});

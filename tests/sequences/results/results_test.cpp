@@ -128,7 +128,13 @@ TEST(Timing, LinesOfOtherKindsAreToldApart) {
 Summary two_layer_summary() {
   Summary s;
   s.sequence = "test";
-  s.layers = {{"cheap", 1, 100, 10, 10, 5.0, 1.0, {32, 32}}, {"dear", 2, 300, 2, 10, 20.0, 4.0, {64, 16}}};
+  s.layers.resize(2);
+  LayerSummary &cheap = s.layers[0], &dear = s.layers[1];
+  cheap.name = "cheap", cheap.parts = 1, cheap.polygons = 100, cheap.renders = 10;
+  cheap.sum_geometric_px += 5.0, cheap.max_geometric_px = 1, cheap.sprite_px = {32, 32};
+  dear.name = "dear", dear.parts = 2, dear.polygons = 300, dear.renders = 2;
+  dear.sum_geometric_px += 20.0, dear.max_geometric_px = 4, dear.sprite_px = {64, 16};
+  cheap.frames_shown = dear.frames_shown = 10;
   for (int frame = 0; frame < 10; ++frame) s.frames.push_back(drawn_line(frame));
   return s;
 }
