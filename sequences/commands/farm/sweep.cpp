@@ -11,17 +11,17 @@ namespace talisman::sequences {
 
 namespace {
 
-using Words = std::vector<std::string>;
+using OptionWords = std::vector<std::string>;
 
 struct SweepFile {
   std::string out, command = "plan";
-  Words sequences, options;
-  std::vector<Words> settings;
-  std::vector<std::vector<Words>> grid;  ///< by key: its alternatives
+  OptionWords sequences, options;
+  std::vector<OptionWords> settings;
+  std::vector<std::vector<OptionWords>> grid;  ///< by key: its alternatives
 };
 
 /// "--geometric-px", "4"; a flag alone; nothing for a flag that is false.
-Words words_of(const std::string& key, const YamlValue& value) {
+OptionWords option_words(const std::string& key, const YamlValue& value) {
   std::string option = "--" + key;
   std::replace(option.begin(), option.end(), '_', '-');
   for (const char* ours : {"--out", "--shard", "--resume", "--plan"})
@@ -33,11 +33,11 @@ Words words_of(const std::string& key, const YamlValue& value) {
   return {option, text};
 }
 
-Words words_of(const YamlValue& map) {
-  Words words;
+OptionWords option_words(const YamlValue& map) {
+  OptionWords words;
   const YamlMap options = map.map();
   for (const auto& [key, value] : options.values())
-    for (const std::string& word : words_of(key, value)) words.push_back(word);
+    for (const std::string& word : option_words(key, value)) words.push_back(word);
   return words;
 }
 
@@ -46,8 +46,8 @@ ValueType map_of_options() { return with_rule({.kind = ValueType::Kind::Text}, "
 void read_grid(const YamlValue& grid, SweepFile& file) {
   const YamlMap keys = grid.map();
   for (const auto& [key, values] : keys.values()) {
-    std::vector<Words> alternatives;
-    for (const YamlValue& value : values.items()) alternatives.push_back(words_of(key, value));
+    std::vector<OptionWords> alternatives;
+    for (const YamlValue& value : values.items()) alternatives.push_back(option_words(key, value));
     file.grid.push_back(std::move(alternatives));
   }
 }
@@ -62,12 +62,12 @@ const Table<SweepFile>& sweep_keys() {
           .key("sequences", &S::sequences, texts(1), "", "names or paths")
           .required()
           .custom(
-              "options", map_of_options(), [](const YamlValue& map, S& s) { s.options = words_of(map); }, "",
-              "of every run")
+              "options", map_of_options(), [](const YamlValue& map, S& s) { s.options = option_words(map); },
+              "", "of every run")
           .custom(
               "settings", map_of_options(),
               [](const YamlValue& list, S& s) {
-                for (const YamlValue& map : list.items()) s.settings.push_back(words_of(map));
+                for (const YamlValue& map : list.items()) s.settings.push_back(option_words(map));
               },
               "", "of one run each")
           .custom("grid", map_of_options(), read_grid, "", "every combination is a run")
@@ -76,14 +76,14 @@ const Table<SweepFile>& sweep_keys() {
 }
 
 /// The settings of one sequence, in the order of their jobs.
-std::vector<Words> settings_in(const SweepFile& file, const std::string& name) {
-  std::vector<Words> all = file.settings;
+std::vector<OptionWords> settings_in(const SweepFile& file, const std::string& name) {
+  std::vector<OptionWords> all = file.settings;
   if (file.grid.empty()) return all;
-  std::vector<Words> combinations = {{}};
-  for (const std::vector<Words>& alternatives : file.grid) {
-    std::vector<Words> longer;
-    for (const Words& begun : combinations)
-      for (const Words& alternative : alternatives) {
+  std::vector<OptionWords> combinations = {{}};
+  for (const std::vector<OptionWords>& alternatives : file.grid) {
+    std::vector<OptionWords> longer;
+    for (const OptionWords& begun : combinations)
+      for (const OptionWords& alternative : alternatives) {
         longer.push_back(begun);
         longer.back().insert(longer.back().end(), alternative.begin(), alternative.end());
       }
@@ -103,9 +103,9 @@ Sweep read_sweep(const std::string& name) {
   sweep.file = name;
   sweep.out = file.out;
   sweep.render = file.command == "render";
-  const std::vector<Words> settings = settings_in(file, name);
+  const std::vector<OptionWords> settings = settings_in(file, name);
   for (const std::string& sequence : file.sequences)
-    for (const Words& own : settings) {
+    for (const OptionWords& own : settings) {
       SweepJob job{formatted("%04zu", sweep.jobs.size()), sequence, file.options, own};
       job.words.insert(job.words.end(), own.begin(), own.end());
       sweep.jobs.push_back(std::move(job));

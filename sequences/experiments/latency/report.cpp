@@ -57,10 +57,10 @@ void write_report(const LatencyCurve& curve, const std::string& dir) {
 }
 
 void print_report(const LatencyCurve& curve, std::ostream& out) {
-  Table table{{"RENDER ms", "predict", "turn p50 °", "p95", "max", "px none p95", "max", "homography p95",
-               "max", "layers p95", "max", "depth p95", "max"},
-              {},
-              2};
+  PageTable table{{"RENDER ms", "predict", "turn p50 °", "p95", "max", "px none p95", "max", "homography p95",
+                   "max", "layers p95", "max", "depth p95", "max"},
+                  {},
+                  2};
   for (const LatencyResult& r : curve.results) {
     std::vector<std::string> row = {fixed(r.render_ms, 0), std::string(name(r.predictor)),
                                     fixed(r.turn_deg.p50, 3), fixed(r.turn_deg.p95, 3),

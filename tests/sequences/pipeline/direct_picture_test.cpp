@@ -23,12 +23,12 @@ using tests::Room;
 constexpr layers::ivec2 kSmallDisplay{160, 120};
 
 /// A room with its layers and pipeline, which keep references to each other.
-struct Show {
-  explicit Show(const Room& room_in, regulator::Policy policy = regulator::Policy::Direct)
+struct ShownOnce {
+  explicit ShownOnce(const Room& room_in, regulator::Policy policy = regulator::Policy::Direct)
       : room(room_in),
         layers(room.layers()),
         pipeline(make_pipeline(room.scene, layers, settings_for(policy))) {}
-  Show(const Show&) = delete;
+  ShownOnce(const ShownOnce&) = delete;
 
   static Settings settings_for(regulator::Policy policy) {
     Settings settings;
@@ -101,7 +101,7 @@ double mean_difference(const chunker::Frame& a, const chunker::Frame& b) {
 
 // Two mirrors in one pass: each shows what its own sprite shows, and both do show something.
 TEST(Direct, ShowsEveryMirror) {
-  const Show both(room_with_two_mirrors(0.5f, 0.5f)), floor(room_with_two_mirrors(0.5f, 0)),
+  const ShownOnce both(room_with_two_mirrors(0.5f, 0.5f)), floor(room_with_two_mirrors(0.5f, 0)),
       wall(room_with_two_mirrors(0, 0.5f));
   EXPECT_LT(mean_difference(both.direct(), both.sprites()), 0.6);
   EXPECT_GT(mean_difference(both.direct(), floor.direct()), 1);
@@ -109,7 +109,7 @@ TEST(Direct, ShowsEveryMirror) {
 }
 
 /// The picture in one mirror alone.
-chunker::Sprite mirrored_in(const Show& show, const std::string& name) {
+chunker::Sprite mirrored_in(const ShownOnce& show, const std::string& name) {
   layers::SpritePlacement placement;
   placement.size_px = kSmallDisplay;
   ShadowMapStore maps;
@@ -123,7 +123,7 @@ chunker::Sprite mirrored_in(const Show& show, const std::string& name) {
 TEST(Direct, MirrorInAMirrorShowsItsOwnColour) {
   Room dull = room_with_two_mirrors(0.5f, 0), bright = room_with_two_mirrors(0.5f, 1);
   for (Room* room : {&dull, &bright}) room->specs[0].shading.reflection = layers::LayerPreferences{};
-  const Show without(dull), with(bright);
+  const ShownOnce without(dull), with(bright);
   const chunker::Sprite a = mirrored_in(without, "floor/reflection"),
                         b = mirrored_in(with, "floor/reflection");
   int shown = 0;
@@ -138,7 +138,7 @@ TEST(Direct, MirrorInAMirrorShowsItsOwnColour) {
 // … and `talisman inspect` says so, where it matters.
 TEST(Direct, InspectNamesTheMirrorThatReflectsNothingInAnother) {
   const auto why = [](const Room& room) {
-    const Show show(room);
+    const ShownOnce show(room);
     for (const layers::EffectCall& call :
          layers::effects_called_for(show.room.scene, show.layers.layers, layers::RunEffects{}))
       if (call.effect == layers::Effect::ReflectionMap) return call.why;
@@ -158,7 +158,7 @@ TEST(Direct, MirrorsOnlyWhatIsBeforeTheMirror) {
   Room buried = sunken;
   buried.scene.nodes[1].local.translation = {0, -0.5001, 0};  // wholly behind the mirror
   const auto reflecting = [](const Room& room) {
-    const Show show(room);
+    const ShownOnce show(room);
     const chunker::Sprite sprite = mirrored_in(show, "floor/reflection");
     layers::ivec2 lo{kSmallDisplay}, hi{-1, -1};
     for (int y = 0; y < kSmallDisplay.y; ++y)
@@ -173,7 +173,7 @@ TEST(Direct, MirrorsOnlyWhatIsBeforeTheMirror) {
   // What is left of the sphere is a cap of radius √(0.5² - 0.2²) = 0.458 at the mirror and 0.3 m deep; the
   // place of its lowest mirrored point and of its border follow from the camera.
   const auto [lo, hi] = reflecting(sunken);
-  const Show show(sunken);
+  const ShownOnce show(sunken);
   const auto camera = show.room.scene.at(0).camera;
   const auto project = [&](dvec3 p) {
     const glm::dvec4 c = layers::clip_from_world(camera, kSmallDisplay) * glm::dvec4(p, 1);
@@ -202,7 +202,7 @@ Room room_with_pair(double fade, bool second) {
 // What a faded layer hides of itself stays hidden: the picture over the first ball is the same whether the
 // second one is behind it or not.
 TEST(Direct, FadedLayerIsOneGroup) {
-  const Show alone(room_with_pair(0.4, false)), pair(room_with_pair(0.4, true)),
+  const ShownOnce alone(room_with_pair(0.4, false)), pair(room_with_pair(0.4, true)),
       front(room_with_pair(1, false));
   const chunker::Frame a = alone.direct(), b = pair.direct(), opaque = front.direct();
   // Where the first ball covers whole pixels: where the unfaded picture differs from the floor alone, less a
@@ -226,8 +226,8 @@ TEST(Direct, FadeFollowsTheClosedForm) {
   ball_only.scene.background = {0, 0, 0};
   Room over_white = ball_only;
   over_white.scene.background = {1, 1, 1};
-  const chunker::Frame result = Show(faded).direct(), behind = Show(floor_only).direct(),
-                       ball = Show(ball_only).direct(), white = Show(over_white).direct();
+  const chunker::Frame result = ShownOnce(faded).direct(), behind = ShownOnce(floor_only).direct(),
+                       ball = ShownOnce(ball_only).direct(), white = ShownOnce(over_white).direct();
   constexpr double kOne = chunker::kOne;
   double most = 0;
   int shown = 0;
@@ -245,7 +245,7 @@ TEST(Direct, FadeFollowsTheClosedForm) {
 TEST(Direct, WithoutFadesIsOnePass) {
   Room keyed = Room();
   keyed.specs[1].fade = {{0, 1}, {1, 0}, layers::Interpolation::Linear};
-  const Show plain{Room()}, show(keyed);
+  const ShownOnce plain{Room()}, show(keyed);
   EXPECT_THAT(direct_groups(plain.pipeline, 0), ElementsAre(DirectGroup{{0, 1}, 1}));
   EXPECT_THAT(direct_groups(show.pipeline, 0), ElementsAre(DirectGroup{{0, 1}, 1}));
   EXPECT_EQ(show.direct(0), plain.direct(0));
@@ -265,7 +265,7 @@ TEST(Direct, GroupsFollowTheOrderOfTheEye) {
   room.specs[1].fade = constantly(0.5);  // the ball at z = 0
   room.specs[4].fade = constantly(0.25);
   // Layers: 0 floor, 1 ball, 2 nearest, 3 far, 4 near, 5 farthest.
-  const Show show(room);
+  const ShownOnce show(room);
   EXPECT_THAT(direct_groups(show.pipeline, 0), ElementsAre(DirectGroup{{0, 5, 3}, 1}, DirectGroup{{1}, 0.5f},
                                                            DirectGroup{{4}, 0.25f}, DirectGroup{{2}, 1}));
 }
@@ -274,7 +274,7 @@ TEST(Direct, GroupsFollowTheOrderOfTheEye) {
 TEST(Direct, PolicyTruthAndSpritesAgree) {
   Room room = Room().casting().mirroring().shining();
   room.specs[1].fade = constantly(0.6);
-  const Show show(room);
+  const ShownOnce show(room);
   const chunker::PreparedScene prepared(show.room.scene);
   PipelineState state(show.pipeline);
   const FrameReport report = step(show.pipeline, state, 0, &prepared);
@@ -282,7 +282,7 @@ TEST(Direct, PolicyTruthAndSpritesAgree) {
   EXPECT_GT(report.render.pixels_shaded, 0);
   EXPECT_LT(mean_difference(show.direct(), show.sprites()), 0.6);
   room.specs[1].fade = {};
-  EXPECT_GT(mean_difference(show.direct(), Show(room).direct()), 0.2);
+  EXPECT_GT(mean_difference(show.direct(), ShownOnce(room).direct()), 0.2);
 }
 
 // --- Blends
@@ -293,7 +293,7 @@ TEST(Direct, TexturesAreBlendedAsOfTheFrame) {
   keyed.specs[0].shading.first_blend = constantly(0.5);
   keyed.specs[0].shading.second_blend = {{0, 1}, {0, 1}, layers::Interpolation::Linear};
   fixed.scene.materials[0].texture_blend = {0.5f, 0.25f};
-  const Show moving(keyed), still(fixed);
+  const ShownOnce moving(keyed), still(fixed);
   EXPECT_EQ(moving.direct(6), still.direct(6));
   EXPECT_GT(mean_difference(moving.direct(18), moving.direct(6)), 0.01);
 }

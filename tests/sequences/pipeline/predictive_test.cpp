@@ -54,8 +54,8 @@ layers::Scene coplanar_scene() {
   return scene;
 }
 
-struct Show {
-  explicit Show(layers::Scene in) : scene(std::move(in)) {
+struct ShownPlan {
+  explicit ShownPlan(layers::Scene in) : scene(std::move(in)) {
     layers::LayerSpec spec;
     spec.name = "all";
     spec.part_globs = {"*"};
@@ -91,7 +91,7 @@ bool same(const chunker::Frame& a, const chunker::Frame& b) { return a.pixels ==
 
 const std::vector<PlanShape> kShapes = {{1, 2}, {2, 2}, {8, 2}, {16, 4}, {9, 3}, {5, 5}, {32, 2}};
 
-void expect_equal_to_direct(const Show& show, const std::string& what) {
+void expect_equal_to_direct(const ShownPlan& show, const std::string& what) {
   const std::vector<chunker::Frame> truth = show.direct();
   const chunker::PreparedScene prepared(show.scene, show.settings.render);
   for (const PlanShape& shape : kShapes)
@@ -106,23 +106,23 @@ void expect_equal_to_direct(const Show& show, const std::string& what) {
 }
 
 TEST(Predictive, WithDeltaZeroAndOneSampleEveryFrameIsThatOfOnePass) {
-  expect_equal_to_direct(Show(swarm_scene(SwarmContent::Shape::Block, 30)), "blocks");
-  expect_equal_to_direct(Show(swarm_scene(SwarmContent::Shape::Quad, 50)), "quads");
+  expect_equal_to_direct(ShownPlan(swarm_scene(SwarmContent::Shape::Block, 30)), "blocks");
+  expect_equal_to_direct(ShownPlan(swarm_scene(SwarmContent::Shape::Quad, 50)), "quads");
 }
 
 TEST(Predictive, WhereDepthsAreEqualTheOrderOfPartsDecidesAsInOnePass) {
-  expect_equal_to_direct(Show(coplanar_scene()), "coplanar");
+  expect_equal_to_direct(ShownPlan(coplanar_scene()), "coplanar");
 }
 
 TEST(Predictive, NothingMovesAllMovesAndACameraThatFlies) {
-  expect_equal_to_direct(Show(swarm_scene(SwarmContent::Shape::Molecule, 0, 12)), "rest");
-  expect_equal_to_direct(Show(swarm_scene(SwarmContent::Shape::Sphere, 100, 12)), "all");
-  expect_equal_to_direct(Show(tests::moving_scene()), "camera");
-  expect_equal_to_direct(Show(tests::skinned_bar_scene()), "deforms");
+  expect_equal_to_direct(ShownPlan(swarm_scene(SwarmContent::Shape::Molecule, 0, 12)), "rest");
+  expect_equal_to_direct(ShownPlan(swarm_scene(SwarmContent::Shape::Sphere, 100, 12)), "all");
+  expect_equal_to_direct(ShownPlan(tests::moving_scene()), "camera");
+  expect_equal_to_direct(ShownPlan(tests::skinned_bar_scene()), "deforms");
 }
 
 TEST(Predictive, FramesMayComeInAnyOrder) {
-  const Show show(swarm_scene(SwarmContent::Shape::Block, 30));
+  const ShownPlan show(swarm_scene(SwarmContent::Shape::Block, 30));
   const std::vector<chunker::Frame> truth = show.direct();
   const chunker::PreparedScene prepared(show.scene, show.settings.render);
   const std::vector<int> order = {7, 7, 6, 0, 12, 3, 4, 4, 5, 11, 10, 9, 8, 2, 1, 0, 12};
@@ -144,7 +144,7 @@ TEST(Predictive, FramesMayComeInAnyOrder) {
 }
 
 TEST(Predictive, ThreadsChangeNothing) {
-  Show show(swarm_scene(SwarmContent::Shape::Sphere, 25));
+  ShownPlan show(swarm_scene(SwarmContent::Shape::Sphere, 25));
   show.settings.regulator.thresholds.geometric_px = 0.7;
   show.settings.render.samples = 16;
   const Pipeline pipeline = show.pipeline({8, 2}, Joining::InPlace);
@@ -164,7 +164,7 @@ TEST(Predictive, ThreadsChangeNothing) {
 }
 
 TEST(Predictive, AllWaysOfJoiningShowTheSameWhateverDeltaAndSamples) {
-  Show show(swarm_scene(SwarmContent::Shape::Block, 40));
+  ShownPlan show(swarm_scene(SwarmContent::Shape::Block, 40));
   show.settings.regulator.thresholds.geometric_px = 1.5;
   const chunker::PreparedScene prepared(show.scene, show.settings.render);
   std::vector<chunker::Frame> first;
@@ -184,7 +184,7 @@ TEST(Predictive, AllWaysOfJoiningShowTheSameWhateverDeltaAndSamples) {
 }
 
 TEST(Predictive, PlanAndDrawingAgree) {
-  const Show show(swarm_scene(SwarmContent::Shape::Block, 30));
+  const ShownPlan show(swarm_scene(SwarmContent::Shape::Block, 30));
   const chunker::PreparedScene prepared(show.scene, show.settings.render);
   const Pipeline pipeline = show.pipeline({8, 2}, Joining::Copy);
   PipelineState planned(pipeline), drawn(pipeline);
@@ -205,7 +205,7 @@ TEST(Predictive, PlanAndDrawingAgree) {
 }
 
 TEST(Predictive, JoinsOfASliceAreThoseOfTheFormulas) {
-  Show show(swarm_scene(SwarmContent::Shape::Block, 30, 6));
+  ShownPlan show(swarm_scene(SwarmContent::Shape::Block, 30, 6));
   show.settings.frames = 64;
   for (const PlanShape& shape : {PlanShape{8, 2}, {16, 4}, {9, 3}, {32, 2}, {5, 5}})
     for (const Joining joining : regulator::kAllJoinings) {
@@ -220,7 +220,7 @@ TEST(Predictive, JoinsOfASliceAreThoseOfTheFormulas) {
 
 TEST(Predictive, BuffersThatNoPartBelongsToTakeNoMemory) {
   // Nothing moves: one buffer of the six holds anything.
-  const Show show(swarm_scene(SwarmContent::Shape::Block, 0));
+  const ShownPlan show(swarm_scene(SwarmContent::Shape::Block, 0));
   const Pipeline pipeline = show.pipeline({32, 2}, Joining::InPlace);
   const chunker::PreparedScene prepared(show.scene, show.settings.render);
   PipelineState state(pipeline);
@@ -233,7 +233,7 @@ TEST(Predictive, BuffersThatNoPartBelongsToTakeNoMemory) {
 }
 
 TEST(Predictive, AnotherPolicyHasNeitherWordsNorBuffers) {
-  const Show show(swarm_scene(SwarmContent::Shape::Block, 30));
+  const ShownPlan show(swarm_scene(SwarmContent::Shape::Block, 30));
   Settings settings = show.settings;
   settings.regulator.policy = regulator::Policy::Threshold;
   const Pipeline pipeline = make_pipeline(show.scene, show.layers, settings);
@@ -243,7 +243,7 @@ TEST(Predictive, AnotherPolicyHasNeitherWordsNorBuffers) {
 }
 
 TEST(Predictive, TenThousandFramesWithoutGrowth) {
-  Show show(swarm_scene(SwarmContent::Shape::Quad, 50, 3));
+  ShownPlan show(swarm_scene(SwarmContent::Shape::Quad, 50, 3));
   show.settings.view.display_px = {33, 20};
   show.settings.frames = 10'000;
   const Pipeline pipeline = show.pipeline({8, 2}, Joining::InPlace);

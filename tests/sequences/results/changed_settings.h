@@ -16,6 +16,7 @@ inline void change(layers::ivec2& value) { value.y += 1; }
 inline void change(layers::dvec2& value) { value.y += 1; }
 inline void change(std::optional<chunker::CompressionOptions>& value) { value.emplace().quality = 7; }
 inline void change(std::vector<layers::ExplicitPair>& value) { value.push_back({0, 1}); }
+inline void change(VisibilityOptions& value) { value.objects = ViewTest::Frustum; }
 inline void change(std::int64_t& value) { value -= 1; }
 template <typename T>
 void change(T& value) {
