@@ -149,15 +149,14 @@ class SightThroughPortal {
       Window window = set_.portals[next].corners;
       for (const Plane& plane : region) window = clipped(window, plane, tolerance_);
       if (is_closed(window, 3 * tolerance_)) continue;
-      keep(way, std::move(window));
+      keep(way, window);
     }
   }
 
-  void keep(int way, Window window) {
+  void keep(int way, const Window& window) {
     Window& kept = windows_[way];
     if (!kept.empty() && is_in(window, kept)) return;
-    const bool is_first = kept.empty();
-    kept = is_first ? std::move(window) : set_.portals[way / 2].corners;
+    kept = kept.empty() ? window : set_.portals[way / 2].corners;
     waiting_.push_back(way);
   }
 

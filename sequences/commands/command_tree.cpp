@@ -340,13 +340,11 @@ void CommandTree::add_accuracy() {
               "for all")
       .option("--latency", accuracy_.latency,
               "SEQUENCE: how far points are off by the age of the camera's pose, held, linear, kalman; and "
-              "what a "
-              "last warp saves")
+              "what a last warp saves")
       .option("--culling", accuracy_.culling,
               "SEQUENCE: trees, octrees and a flat scan that find what is in view: time, nodes, tests")
       .option("--visibility", accuracy_.visibility,
-              "SEQUENCE: each way of finding what can be seen: polygons left, time; exit code 1 if a picture "
-              "differs")
+              "SEQUENCE: what each way of finding what can be seen leaves and costs")
       .flag("--hard", accuracy_.hard,
             "cases of every stage that a careless one gets wrong, each with its rule; exit code 1 if one is "
             "broken");

@@ -86,7 +86,7 @@ Workload own_parts(const layers::Scene& scene, const std::vector<layers::SceneFr
   return work;
 }
 
-/// `count` copies of the first frame's boxes on a square beside each other, of which a share moves to and fro.
+/// `count` copies of the first frame's boxes on a square, the first in its own place, of which a share moves to and fro.
 Workload copies(const std::vector<Box3>& boxes, int count, double share, int frames) {
   Workload work{"copies", share, {}, {}};
   Box3 all;
@@ -98,8 +98,7 @@ Workload copies(const std::vector<Box3>& boxes, int count, double share, int fra
   std::vector<Box3> rest;
   for (int i = 0; i < count; ++i) {
     const int set = i / int(boxes.size());
-    rest.push_back(
-        shifted(boxes[i % boxes.size()], pitch * layers::dvec3(set % row - row / 2, 0, set / row - row / 2)));
+    rest.push_back(shifted(boxes[i % boxes.size()], pitch * layers::dvec3(set % row, 0, set / row)));
   }
   const int stride = share > 0 ? int(std::lround(1 / share)) : 0;
   for (int frame = 0; frame < frames; ++frame) {

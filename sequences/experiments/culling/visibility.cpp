@@ -25,9 +25,10 @@ class VisibilityRun {
     const Stopwatch watch;
     const SeenParts* seen = seen_at(pipeline_, state_, frame);
     const double ms = watch.ms();
-    (decided_ == 0 ? result_.first_ms : result_.decide_ms) += ms;
-    if (decided_ > 0) result_.decide_most_ms = std::max(result_.decide_most_ms, ms);
-    ++decided_;
+    if (decided_++ == 0)
+      result_.first_ms = ms;
+    else
+      decided_ms_.push_back(ms);
     const double polygons = seen ? double(seen->polygons) : all_polygons;
     result_.polygons += polygons;
     result_.polygons_most = std::max(result_.polygons_most, polygons);
@@ -48,7 +49,9 @@ class VisibilityRun {
     VisibilityResult result = result_;
     const double frames = std::max(decided_, 1);
     for (double* sum : {&result.polygons, &result.parts, &result.cells}) *sum /= frames;
-    result.decide_ms /= std::max(frames - 1, 1.0);
+    std::vector<double> ms = decided_ms_;
+    std::sort(ms.begin(), ms.end());
+    if (!ms.empty()) result.decide_ms = ms[ms.size() / 2], result.decide_most_ms = ms.back();
     result.render_ms /= std::max(result.drawn, 1);
     return result;
   }
@@ -63,6 +66,7 @@ class VisibilityRun {
   PipelineState state_;
   VisibilityResult result_;
   int decided_ = 0;
+  std::vector<double> decided_ms_;  ///< all but the first
 };
 
 }  // namespace

@@ -6,7 +6,7 @@
 ///
 /// Every triple (sequences/pipeline/culling/visibility.h) decides every frame of the walk; one frame in so many is drawn
 /// with policy `direct`. Pictures must be those of `none,none,none`, byte for byte: `differing` counts the frames that
-/// are not. `first_ms` is the first decision, with all that is worked out once; `decide_ms` the mean of the others. Times are of
+/// are not. `first_ms` is the first decision, with all that is worked out once; `decide_ms` the median of the others. Times are of
 /// one thread.
 
 #include <cstdint>

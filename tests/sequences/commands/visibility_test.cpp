@@ -17,6 +17,9 @@ display: [64, 48]
 shapes:
   - {id: near, box: [1, 1, 1], position: [2, 1, 1]}
   - {id: far, box: [1, 1, 1], position: [6, 1, 3.4]}
+  - {id: wall before the door, box: [0.2, 3, 1], position: [4, 1.5, 0.5]}
+  - {id: wall behind the door, box: [0.2, 3, 2], position: [4, 1.5, 3]}
+  - {id: wall above the door, box: [0.2, 1, 1], position: [4, 2.5, 1.5]}
 camera: {position: [1, 1.5, 3], look_at: [8, 1, 1]}
 regulator: {policy: direct}
 cells:
@@ -38,15 +41,15 @@ class Visibility : public Tool {
 };
 
 TEST_F(Visibility, BadCellsAndPortalsAreRefusedWithTheirLine) {
-  expect_refused("name: store", "name: hall", "10:", "named twice");
-  expect_refused("lo: [4, 0, 0]", "lo: [3, 0, 0]", "10:", "overlap");
-  expect_refused("hi: [8, 3, 4]", "hi: [4, 3, 4]", "10:", "inside out along x");
-  expect_refused("to: store", "to: stor", "12:", "'stor' is no cell");
-  expect_refused("to: store", "to: hall", "12:", "one cell twice");
-  expect_refused("[4, 2, 2]", "[4.1, 2, 2]", "12:", "off the shared face");
-  expect_refused("[4, 2, 2]", "[4, 3.5, 2]", "12:", "outside of 'hall' or 'store'");
-  expect_refused("[4, 2, 2]", "[4, 0.2, 1.1]", "12:", "not convex");
-  expect_refused("portals:", "visibility: cto,frustum,eye\nportals:", "11:", "visibility");
+  expect_refused("name: store", "name: hall", "13:", "named twice");
+  expect_refused("lo: [4, 0, 0]", "lo: [3, 0, 0]", "13:", "overlap");
+  expect_refused("hi: [8, 3, 4]", "hi: [4, 3, 4]", "13:", "inside out along x");
+  expect_refused("to: store", "to: stor", "15:", "'stor' is no cell");
+  expect_refused("to: store", "to: hall", "15:", "one cell twice");
+  expect_refused("[4, 2, 2]", "[4.1, 2, 2]", "15:", "off the shared face");
+  expect_refused("[4, 2, 2]", "[4, 3.5, 2]", "15:", "outside of 'hall' or 'store'");
+  expect_refused("[4, 2, 2]", "[4, 0.2, 1.1]", "15:", "not convex");
+  expect_refused("portals:", "visibility: cto,frustum,eye\nportals:", "14:", "visibility");
 }
 
 TEST_F(Visibility, TriplesThatCannotBeAreRefused) {
@@ -72,6 +75,15 @@ TEST_F(Visibility, AllTriplesAreMeasuredAndShowTheSame) {
   EXPECT_THAT(outcome.output, HasSubstr("2 cells, 1 portals"));
   const std::string csv = read("o/visibility.csv");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 22);
+}
+
+// Faces that are not opaque are a lie about the scene: the pictures tell, and so does the exit code.
+TEST_F(Visibility, ADifferentPictureIsExitCode1) {
+  std::string text = kTwoRooms;
+  text.erase(text.find("  - {id: wall before"), text.find("camera:") - text.find("  - {id: wall before"));
+  write("open.yaml", text);
+  EXPECT_EQ(
+      run("accuracy --visibility open.yaml --frames 0-3 --size 64x48 --progress none --out o").exit_code, 1);
 }
 
 TEST_F(Visibility, StructuresAreMeasured) {
