@@ -11,11 +11,13 @@
 #include "sequences/experiments/statistics.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/file_text.h"
+#include "sequences/files/number_text.h"
 #include "sequences/pictures/plot.h"
 #include "sequences/results/exports/csv_export.h"
 #include "sequences/results/exports/finished_tables.h"
 #include "sequences/results/finished_run.h"
 #include "sequences/results/shards/merge.h"
+#include "sequences/results/shards/shard.h"
 
 namespace talisman::sequences {
 

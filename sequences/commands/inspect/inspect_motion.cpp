@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sequences/content/value_type.h"
+#include "sequences/files/errors.h"
 #include "sequences/files/how_many.h"
 #include "sequences/files/number_text.h"
 #include "sequences/files/utf8.h"
