@@ -78,20 +78,34 @@ TEST(Culling, TheFrustumChangesNoPictureOfRandomScenes) {
 }
 
 TEST(Culling, WhatIsOutOfViewIsCulledAndNamedSo) {
-  const layers::Scene scene = tests::fleet_scene(60, 5);
-  const layers::LayerSet set = layers::factor(scene, tests::one_layer_per_part(scene));
-  Settings settings = fleet_settings(Policy::Threshold);
+  const tests::TemporaryFolder folder;
+  const Sequence s = load_sequence(
+      folder.write("three.yaml",
+                   "frames: 4\n"
+                   "display: [96, 72]\n"
+                   "shapes:\n"
+                   "  - {id: left, box: [1, 1, 1], position: [-30, 0, 0]}\n"
+                   "  - {id: middle, box: [1, 1, 1]}\n"
+                   "  - {id: behind, box: [1, 1, 1], position: [0, 0, 30]}\n"
+                   "camera: {fov_deg: 40, near_m: 1, far_m: 100, position: [0, 0, 10], look_at: [0, 0, 0]}\n"
+                   "layers:\n"
+                   "  - {name: left, parts: [left]}\n"
+                   "  - {name: middle, parts: [middle]}\n"
+                   "  - {name: behind, parts: [behind]}\n"));
+  Settings settings = own_settings(s);
+  settings.regulator.policy = Policy::Threshold;
   settings.visibility = kFrustum;
-  const Pipeline pipeline = make_pipeline(scene, set, settings);
+  const Pipeline pipeline = make_pipeline(*s.scene, s.layers, settings);
   PipelineState state(pipeline);
-  int culled = 0;
-  for (int frame = 0; frame < 12; ++frame)
-    for (const regulator::LayerDecision& d : step(pipeline, state, frame, nullptr).plan.decisions) {
-      const bool is_culled = d.reason == "culled: outside of the view";
-      EXPECT_TRUE(!is_culled || d.action == regulator::Action::Drop);
-      culled += is_culled;
+  for (int frame = 0; frame < s.frames; ++frame) {
+    const FrameReport report = step(pipeline, state, frame, nullptr);
+    const std::vector<regulator::LayerDecision>& decisions = report.plan.decisions;
+    for (const int hidden : {0, 2}) {
+      EXPECT_EQ(decisions[hidden].action, regulator::Action::Drop);
+      EXPECT_EQ(decisions[hidden].reason, "culled: outside of the view");
     }
-  EXPECT_GT(culled, 0);
+    EXPECT_NE(decisions[1].action, regulator::Action::Drop) << decisions[1].reason;
+  }
 }
 
 // Frames in any order, repeated, and far apart: as from a new state.
