@@ -71,4 +71,21 @@ int run_experiment(const ExperimentCommand<Report>& command, const ExperimentOpt
   return kSuccess;
 }
 
+/// The same for what measures the frames of a sequence under one policy: measure(sequence, settings, frames, progress).
+/// Returns its report.
+template <typename Measure>
+auto run_policy_experiment(const char* policy, const Measure& measure, const ExperimentOptions& options,
+                           const std::string& dir, std::ostream& out) {
+  require_progress_word(options.progress);
+  const Sequence sequence = load_with_warnings(options.sequence);
+  const ResolvedRun run = experiment_run(sequence, options, experiment_size(sequence, options), policy);
+  const ExperimentFrames frames = experiment_frames(run, options.quality_every);
+  create_folder(dir);
+  auto report = measure(sequence, run.settings, frames, run.options.progress);
+  write_report(report, dir);
+  print_report(report, out);
+  out << "\nresults in " << dir << "\n";
+  return report;
+}
+
 }  // namespace talisman::sequences
