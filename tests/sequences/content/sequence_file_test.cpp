@@ -148,7 +148,7 @@ const std::vector<tests::Fault> kFaults = {
     {4, "display: [-640, 480]", "display[0] is '-640'"},
     {4, "display: [640]", "display is a list of 1"},
     {4, "display: 640", "display is '640'"},
-    {4, "color: red", "key 'color' is not known here; keys are assets, background, bound, camera"},
+    {4, "color: red", "key 'color' is not known here; keys are assets, background, bound, building, camera"},
     {6, "  - {id: still, file: gone.obj}", "'gone.obj' is not there"},
     {6, "  - {id: still, file: \"no-such-package:/usr/a.obj\"}", "sequences/fetch-assets"},
     {6, "  - {id: still, file: box.obj, length_m: 0}",
