@@ -196,8 +196,7 @@ std::string held_frames_defect(const Scene& scene, const MovingPicture& picture)
     return broken("at least 1, and as many", held, " frames and ", picture.textures.size(), " textures");
   if (!strictly_grows(picture.frames)) return broken("numbers of frames grow", "frames");
   for (const int texture : picture.textures)
-    if (const std::string defect = index_in("texture", texture, scene.textures.size(), false);
-        !defect.empty())
+    if (std::string defect = index_in("texture", texture, scene.textures.size(), false); !defect.empty())
       return defect;
   if (picture.texture == picture.textures.front()) return {};
   return broken(text("that of its first frame, ", picture.textures.front()), "texture ", picture.texture);
@@ -208,7 +207,7 @@ std::string defect_of(const Scene& scene, const MovingPicture& picture) {
     return broken("finite, above 0", "fps ", picture.fps);
   if (!std::isfinite(picture.start_s)) return finite("start", picture.start_s);
   if (picture.frame_count < 1) return broken("at least 1", "frame count ", picture.frame_count);
-  if (const std::string defect = held_frames_defect(scene, picture); !defect.empty()) return defect;
+  if (std::string defect = held_frames_defect(scene, picture); !defect.empty()) return defect;
   const std::vector<double>& starts = picture.starts_s;
   if (starts.empty()) return {};
   if (starts.size() != static_cast<std::size_t>(picture.frame_count))

@@ -179,27 +179,46 @@ bool leads_to(std::span<const ExplicitPair> pairs, int from, int to) {
   return false;
 }
 
-bool have_cycle(std::span<const ExplicitPair> pairs) {
+namespace {
+
+/// Gives up, one after the other, the layers at which no pair ends (`to`) that begins (`from`) at one that is left.
+void peel(std::span<const ExplicitPair> pairs, int ExplicitPair::*from, int ExplicitPair::*to,
+          std::vector<char>& left) {
+  const std::size_t ids = left.size();
+  std::vector<std::size_t> first(ids + 1, 0), waits_for(ids, 0);  // leaving id: first[id] … first[id + 1]
+  const auto counts = [&left](const ExplicitPair& p) { return left[p.behind] && left[p.front]; };
+  for (const ExplicitPair& p : pairs) {
+    if (!counts(p)) continue;
+    ++first[p.*from + 1];
+    ++waits_for[p.*to];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<int> ends(first.back());
+  std::vector<std::size_t> next(first.begin(), first.end() - 1);
+  for (const ExplicitPair& p : pairs)
+    if (counts(p)) ends[next[p.*from]++] = p.*to;
+  std::vector<int> given_up;
+  for (std::size_t id = 0; id < ids; ++id)
+    if (left[id] && waits_for[id] == 0) given_up.push_back(static_cast<int>(id));
+  for (std::size_t i = 0; i < given_up.size(); ++i) {
+    const int id = given_up[i];
+    left[id] = 0;
+    for (std::size_t k = first[id]; k < first[id + 1]; ++k)
+      if (--waits_for[ends[k]] == 0) given_up.push_back(ends[k]);
+  }
+}
+
+}  // namespace
+
+std::vector<char> cyclic_core(std::span<const ExplicitPair> pairs) {
   std::size_t ids = 0;
   for (const ExplicitPair& p : pairs)
     ids = std::max({ids, static_cast<std::size_t>(p.behind) + 1, static_cast<std::size_t>(p.front) + 1});
-  std::vector<std::size_t> first(ids + 1, 0),
-      waits_for(ids, 0);  // those in front of id: first[id] … first[id + 1]
-  for (const ExplicitPair& p : pairs) {
-    ++first[p.behind + 1];
-    ++waits_for[p.front];
-  }
-  std::partial_sum(first.begin(), first.end(), first.begin());
-  std::vector<int> in_front(pairs.size());
-  std::vector<std::size_t> next(first.begin(), first.end() - 1);
-  for (const ExplicitPair& p : pairs) in_front[next[p.behind]++] = p.front;
-  std::vector<int> placed;  // each behind all that it has to be behind of
-  for (std::size_t id = 0; id < ids; ++id)
-    if (waits_for[id] == 0) placed.push_back(static_cast<int>(id));
-  for (std::size_t i = 0; i < placed.size(); ++i)
-    for (std::size_t k = first[placed[i]]; k < first[placed[i] + 1]; ++k)
-      if (--waits_for[in_front[k]] == 0) placed.push_back(in_front[k]);
-  return placed.size() < ids;
+  std::vector<char> left(ids, 1);
+  peel(pairs, &ExplicitPair::behind, &ExplicitPair::front, left);
+  peel(pairs, &ExplicitPair::front, &ExplicitPair::behind, left);
+  if (std::find(left.begin(), left.end(), 1) == left.end()) left.clear();
+  return left;
 }
 
 }  // namespace talisman::layers

@@ -51,8 +51,8 @@ struct KeptPairs {
   std::string defect;
 };
 
-/// `group_of(layer)` is the layer's OrderGroup as int, or kAbsent. Cost: O(pairs + largest id); O(pairs²) where
-/// pairs close a cycle.
+/// `group_of(layer)` is the layer's OrderGroup as int, or kAbsent. Cost: O(pairs + largest id), and O(c²) for the c pairs
+/// between layers of cyclic_core.
 inline constexpr int kAbsent = -100;
 template <typename GroupOf>
 KeptPairs keep_pairs(std::span<const ExplicitPair> pairs, GroupOf group_of);
@@ -60,8 +60,9 @@ KeptPairs keep_pairs(std::span<const ExplicitPair> pairs, GroupOf group_of);
 /// Does a chain of `pairs` lead from `from` to `to`?
 bool leads_to(std::span<const ExplicitPair> pairs, int from, int to);
 
-/// Do some of `pairs` close a cycle? Cost: O(pairs + largest id). Ids ≥ 0.
-bool have_cycle(std::span<const ExplicitPair> pairs);
+/// By id: does the layer lie on a cycle of `pairs`, or on a way from one to another? Empty where there is none. Cost: O(pairs
+/// + largest id). Ids ≥ 0.
+std::vector<char> cyclic_core(std::span<const ExplicitPair> pairs);
 
 template <typename GroupOf>
 KeptPairs keep_pairs(std::span<const ExplicitPair> pairs, GroupOf group_of) {
@@ -76,12 +77,14 @@ KeptPairs keep_pairs(std::span<const ExplicitPair> pairs, GroupOf group_of) {
   std::vector<ExplicitPair> sound;
   for (const ExplicitPair& p : present)
     if (rule_of_groups(p) == nullptr) sound.push_back(p);
-  const bool some_cycle = have_cycle(sound);  // else none of them closes one
+  const std::vector<char> core = cyclic_core(sound);  // a pair with an end outside of it closes no cycle
+  std::vector<ExplicitPair> kept_in_core;
   KeptPairs kept;
   for (const ExplicitPair& p : present) {
     const char* broken = rule_of_groups(p);
-    if (!broken && some_cycle && leads_to(kept.pairs, p.front, p.behind))
-      broken = "closes a cycle of explicit pairs";
+    const bool in_core = !broken && !core.empty() && core[p.behind] && core[p.front];
+    if (in_core && leads_to(kept_in_core, p.front, p.behind)) broken = "closes a cycle of explicit pairs";
+    if (!broken && in_core) kept_in_core.push_back(p);
     if (!broken) {
       kept.pairs.push_back(p);
     } else if (kept.defect.empty()) {
