@@ -10,7 +10,7 @@
 
 #include <oneapi/tbb/global_control.h>
 
-#include "sequences/commands/farm/shard_command.h"
+#include "sequences/commands/fan_out/shard_command.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/quoted.h"
 #include "sequences/pictures/page_assets.h"

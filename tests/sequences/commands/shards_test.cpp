@@ -11,7 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sequences/commands/farm/shard_command.h"
+#include "sequences/commands/fan_out/shard_command.h"
 #include "sequences/commands/render.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page_assets.h"

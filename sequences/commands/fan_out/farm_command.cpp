@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/commands/farm/farm_command.h"
+#include "sequences/commands/fan_out/farm_command.h"
 
 #include <filesystem>
 #include <optional>
 #include <ostream>
 
-#include "sequences/commands/farm/shard_command.h"
-#include "sequences/commands/farm/sweep_table.h"
+#include "sequences/commands/fan_out/shard_command.h"
+#include "sequences/commands/fan_out/sweep_table.h"
 #include "sequences/commands/render.h"
 #include "sequences/commands/run_words.h"
 #include "sequences/content/value_type.h"

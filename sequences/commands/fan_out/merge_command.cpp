@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <ostream>
 
-#include "sequences/commands/farm/shard_command.h"
+#include "sequences/commands/fan_out/shard_command.h"
 #include "sequences/files/how_many.h"
 #include "sequences/results/shards/merge.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/commands/farm/sweep.h"
+#include "sequences/commands/fan_out/sweep.h"
 
 #include <algorithm>
 

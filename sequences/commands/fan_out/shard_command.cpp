@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "sequences/commands/farm/shard_command.h"
+#include "sequences/commands/fan_out/shard_command.h"
 
 #include <cstdio>
 #include <filesystem>

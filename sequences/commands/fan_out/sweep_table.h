@@ -14,7 +14,7 @@
 
 #include <string>
 
-#include "sequences/commands/farm/sweep.h"
+#include "sequences/commands/fan_out/sweep.h"
 
 namespace talisman::sequences {
 
