@@ -286,7 +286,7 @@ TEST_F(Messages, StoppedPlanDoesNotAdviseToResume) {
         "frames: 200000\nshapes: [{id: a, box: [1, 1, 1], spin: {deg_per_s: 9}}]\ncamera: {position: [0, 0, "
         "5]}\n");
   const Outcome outcome =
-      run_and_signal("plan long.yaml --progress none --out p", "p/decisions.jsonl.partial", "INT");
+      run_and_signal("plan long.yaml --progress none --out p", "p/decisions.jsonl.partial", SIGINT);
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
   EXPECT_THAT(outcome.output, AllOf(HasSubstr("stopped after "), Not(HasSubstr("--resume"))));
 }

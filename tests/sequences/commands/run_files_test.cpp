@@ -57,7 +57,7 @@ TEST_F(RunFiles, OfAPlanAreTheSameEveryTime) {
 TEST_F(RunFiles, OfARunThatWasKilledAndResumedAreThoseOfAWholeOne) {
   const std::string options = "render passing.yaml --compression 60 --progress none --out ";
   ASSERT_EQ(run(options + "whole").exit_code, 0);
-  run_and_signal(options + "cut", "cut/frames/0008.png", "KILL");
+  run_and_signal(options + "cut", "cut/frames/0008.png", SIGKILL);
   ASSERT_FALSE(fs::exists(folder_ / "cut/summary.json")) << "the run was meant to be killed before its end";
   const Outcome resumed = run(options + "cut --resume");
   ASSERT_EQ(resumed.exit_code, 0) << resumed.output;

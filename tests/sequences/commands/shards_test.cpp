@@ -250,7 +250,8 @@ TEST_F(Shards, KilledAndResumedMergeToTheBytesOfOneRun) {
         "render passing.yaml --size 96x72 --frames 2-19 --no-report --quiet --out many --shard " +
         std::to_string(index) + "/3";
     const int second = 2 + 6 * index + 1;
-    run_and_signal(words, formatted("many/shards/%s.partial/frames/%04d.png", shard.c_str(), second), "KILL");
+    run_and_signal(words, formatted("many/shards/%s.partial/frames/%04d.png", shard.c_str(), second),
+                   SIGKILL);
     EXPECT_FALSE(fs::exists(path("many/shards/" + shard)));
     if (index == 1) {
       EXPECT_THAT(message_of([&] { merge_shards(path("many"), false); }),

@@ -3,6 +3,7 @@
 
 /// The tool as a user meets it: a program that is started in a folder of its own, for tests.
 
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -66,12 +67,16 @@ class Tool : public ::testing::Test {
     return outcome;
   }
 
-  /// Starts the tool and sends it a signal as soon as `file` is there.
-  Outcome run_and_signal(const std::string& arguments, const std::string& file,
-                         const std::string& signal) const {
-    write("start.sh", "'" + tool() + "' " + arguments + " & pid=$!\nwhile [ ! -e '" + file +
-                          "' ] && kill -0 $pid; do sleep 0.01; done\nkill -" + signal + " $pid\nwait $pid\n");
-    return run_shell("bash start.sh");
+  /// Runs the tool, which gets the signal in the very operation that makes `file`: on any machine at the same instant.
+  Outcome run_and_signal(const std::string& arguments, const std::string& file, int signal) const {
+    const std::string shim = std::filesystem::path(tool()).parent_path().string() + "/failing_disk.so";
+    const Outcome outcome =
+        run(arguments, "ASAN_OPTIONS=\"verify_asan_link_order=0:$ASAN_OPTIONS\" LD_PRELOAD='" + shim +
+                           "' SIGNAL_AT='" + path(file) + "' SIGNAL=" + std::to_string(signal));
+    if (signal == SIGKILL) {
+      EXPECT_EQ(outcome.exit_code, 128 + SIGKILL) << file << " was not made";
+    }
+    return outcome;
   }
 
   /// Expects exit code 2 and exactly one error line that holds all of `parts`.

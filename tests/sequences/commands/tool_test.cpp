@@ -63,7 +63,7 @@ TEST_F(Tool, KilledRunContinuesWithTheSameBytes) {
   const std::string options = "render cube.obj --frames 0-59 --size 640x480 --progress none --out ";
   ASSERT_EQ(run(options + "whole").exit_code, 0);
   // SIGKILL in the middle: nothing can be tidied up.
-  run_and_signal(options + "cut", "cut/frames/0005.png", "KILL");
+  run_and_signal(options + "cut", "cut/frames/0005.png", SIGKILL);
   EXPECT_FALSE(fs::exists(folder_ / "cut/summary.json")) << "the run was meant to be killed before its end";
   EXPECT_LT(files_in("cut/frames").size(), 60u);
   const Outcome resumed = run(options + "cut --resume");
@@ -82,7 +82,7 @@ TEST_F(Tool, RunKilledWhileLayersAreMergedContinuesWithTheSameBytes) {
   write("passing.yaml", kPassing);
   const std::string options = "render passing.yaml --progress none --out ";
   ASSERT_EQ(run(options + "whole").exit_code, 0);
-  run_and_signal(options + "cut", "cut/frames/0006.png", "KILL");
+  run_and_signal(options + "cut", "cut/frames/0006.png", SIGKILL);
   EXPECT_FALSE(fs::exists(folder_ / "cut/summary.json")) << "the run was meant to be killed before its end";
   const Outcome resumed = run(options + "cut --resume");
   ASSERT_EQ(resumed.exit_code, 0) << resumed.output;
@@ -98,7 +98,7 @@ TEST_F(Tool, RunKilledWhileLayersAreMergedContinuesWithTheSameBytes) {
 
 TEST_F(Tool, InterruptedRunSaysSoAndExitsWithThree) {
   const Outcome outcome = run_and_signal(
-      "render cube.obj --frames 0-59 --size 640x480 --progress none --out o", "o/frames/0002.png", "INT");
+      "render cube.obj --frames 0-59 --size 640x480 --progress none --out o", "o/frames/0002.png", SIGINT);
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("--resume"));
   EXPECT_FALSE(fs::exists(folder_ / "o/summary.json"));

@@ -130,7 +130,7 @@ TEST_F(Tune, BytesDoNotDependOnThreads) {
 
 TEST_F(Tune, WhatWasFoundStaysWhenItIsStopped) {
   const Outcome outcome = run_and_signal(
-      "tune bodies.yaml --flip 0.012 --size 1200x900 --progress none --out t", "t/truth", "INT");
+      "tune bodies.yaml --flip 0.012 --size 1200x900 --progress none --out t", "t/truth", SIGINT);
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
   EXPECT_FALSE(Json::parse(read("t/tune.json"))["complete"].get<bool>());
   EXPECT_FALSE(std::filesystem::exists(path("t/truth")));

@@ -81,7 +81,7 @@ TEST_F(TwoRuns, AnotherComparisonLeavesNothingOfTheFirst) {
 TEST_F(TwoRuns, ComparisonThatIsStoppedKeepsItsTables) {
   const Outcome outcome =
       run_and_signal("compare passing.yaml threshold:1 hold:3 --size 1200x900 --progress none --out c",
-                     "c/frames/0001.png", "INT");
+                     "c/frames/0001.png", SIGINT);
   EXPECT_EQ(outcome.exit_code, 3) << outcome.output;
   EXPECT_THAT(outcome.output, HasSubstr("error: stopped after "));
   const Json report = Json::parse(read("c/compare.json"));

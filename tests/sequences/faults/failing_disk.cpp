@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // To be preloaded: a disk that fails once. Of the operations on files below the folder FAULT_BELOW, counted from 1, the
 // FAULT_AT-th fails with "No space left on device"; a write writes half of its bytes before. FAULT_AT=0: none fails. The
-// number of operations so far is kept in the file FAULT_COUNT, which outlasts the process.
+// number of operations so far is kept in the file FAULT_COUNT, which outlasts the process. And an instant that does not
+// depend on the speed of the machine: as soon as the file or folder SIGNAL_AT is there, the process sends itself SIGNAL.
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <signal.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -60,6 +62,15 @@ int full() {
   return -1;
 }
 
+/// An operation that made the file or folder `path` has ended with `result`.
+int made(const char* path, int result) {
+  static const std::string awaited = setting("SIGNAL_AT");
+  static std::atomic<bool> sent{false};
+  if (result >= 0 && !awaited.empty() && absolute(path) == awaited && !sent.exchange(true))
+    ::kill(::getpid(), std::atoi(setting("SIGNAL").c_str()));
+  return result;
+}
+
 }  // namespace
 
 extern "C" {
@@ -78,12 +89,12 @@ int fsync(int fd) {
 
 int rename(const char* from, const char* to) {
   static auto* const real = next<int(const char*, const char*)>("rename");
-  return counts(absolute(to)) ? full() : real(from, to);
+  return counts(absolute(to)) ? full() : made(to, real(from, to));
 }
 
 int mkdir(const char* path, mode_t mode) {
   static auto* const real = next<int(const char*, mode_t)>("mkdir");
-  return counts(absolute(path)) ? full() : real(path, mode);
+  return counts(absolute(path)) ? full() : made(path, real(path, mode));
 }
 
 int open(const char* path, int flags, ...) {
@@ -92,7 +103,8 @@ int open(const char* path, int flags, ...) {
   va_start(arguments, flags);
   const mode_t mode = flags & O_CREAT ? va_arg(arguments, mode_t) : 0;
   va_end(arguments);
-  return (flags & O_CREAT) && counts(absolute(path)) ? full() : real(path, flags, mode);
+  if (!(flags & O_CREAT)) return real(path, flags, mode);
+  return counts(absolute(path)) ? full() : made(path, real(path, flags, mode));
 }
 
 int open64(const char* path, int flags, ...) {
