@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include <glm/geometric.hpp>
@@ -106,9 +107,16 @@ class Pairs {
     for (std::size_t body = 0; body < bodies_; ++body) {
       const Carry forward(then_, now_, body, points_per_body_), back(now_, then_, body, points_per_body_);
       if (is_beyond(body, forward)) continue;
-      for (std::size_t l = 0; l < now_.lights.size(); ++l)
-        if (!forward.is_still() || eye_moved || then_.lights[l] != now_.lights[l])
-          add_places(body, l, forward, back);
+      std::optional<BodySurface> before, after;  // where a light asks for them
+      for (std::size_t l = 0; l < now_.lights.size(); ++l) {
+        if (forward.is_still() && !eye_moved && then_.lights[l] == now_.lights[l]) continue;
+        if (!draws_outlines(then_.lights[l], *bound_.surface) &&
+            !draws_outlines(now_.lights[l], *bound_.surface))
+          continue;
+        if (!before) before.emplace(surface_of(then_, body)), after.emplace(surface_of(now_, body));
+        for (const SurfacePlace& place : places_of(then_, *before, l)) add_shaded(place, forward(place));
+        for (const SurfacePlace& place : places_of(now_, *after, l)) add_shaded(back(place), place);
+      }
     }
   }
 
@@ -142,18 +150,16 @@ class Pairs {
     return !display_.may_show(carried);
   }
 
-  std::vector<SurfacePlace> places_of(const LayerState& state, std::size_t body, std::size_t light) const {
-    std::vector<SurfacePlace> places;
-    const BodySurface surface{
-        state.world_points,
-        std::span(bound_.hull.triangles).subspan(body * triangles_per_body_, triangles_per_body_)};
-    append_light_places(state.lights[light], state.eye(), *bound_.surface, surface, places);
-    return places;
+  BodySurface surface_of(const LayerState& state, std::size_t body) const {
+    return {state.world_points,
+            std::span(bound_.hull.triangles).subspan(body * triangles_per_body_, triangles_per_body_)};
   }
 
-  void add_places(std::size_t body, std::size_t light, const Carry& forward, const Carry& back) {
-    for (const SurfacePlace& place : places_of(then_, body, light)) add_shaded(place, forward(place));
-    for (const SurfacePlace& place : places_of(now_, body, light)) add_shaded(back(place), place);
+  std::vector<SurfacePlace> places_of(const LayerState& state, const BodySurface& surface,
+                                      std::size_t light) const {
+    std::vector<SurfacePlace> places;
+    append_light_places(state.lights[light], state.eye(), *bound_.surface, surface, places);
+    return places;
   }
 
   const LayerState &then_, &now_;

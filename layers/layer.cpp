@@ -9,13 +9,12 @@
 #include <unordered_map>
 
 #include "layers/animation.h"
+#include "layers/glob.h"
 #include "layers/shading.h"
 
 namespace talisman::layers {
 
 namespace {
-
-bool has_wildcard(const std::string& glob) { return glob.find_first_of("*?") != std::string::npos; }
 
 /// Which parts a glob takes. Globs without wildcards are looked up, so that thousands of layers of one part
 /// stay cheap.
@@ -28,7 +27,7 @@ class PartNames {
 
   std::vector<int> matching(const std::string& glob) const {
     if (!has_wildcard(glob)) {
-      const auto found = by_name_.find(glob);
+      const auto found = by_name_.find(name_of_glob(glob));
       return found == by_name_.end() ? std::vector<int>{} : found->second;
     }
     std::vector<int> parts;
@@ -193,32 +192,7 @@ std::string unused_name(const Scene& scene, int node, std::set<std::string>& use
   return name;
 }
 
-/// The narrowest glob that takes a part by its name: a '*' in the name must not take others.
-std::string glob_for(std::string name) {
-  std::replace(name.begin(), name.end(), '*', '?');
-  return name;
-}
-
 }  // namespace
-
-bool glob_matches(const std::string& glob, const std::string& text) {
-  // Greedy with one point of return: only the last '*' ever needs to take more.
-  std::size_t g = 0, t = 0, star = std::string::npos, star_t = 0;
-  while (t < text.size()) {
-    if (g < glob.size() && glob[g] == '*') {
-      star = g++;
-      star_t = t;
-    } else if (g < glob.size() && (glob[g] == '?' || glob[g] == text[t])) {
-      ++g, ++t;
-    } else if (star != std::string::npos) {
-      g = star + 1;
-      t = ++star_t;
-    } else {
-      return false;
-    }
-  }
-  return glob.find_first_not_of('*', g) == std::string::npos;
-}
 
 LayerSet factor(const Scene& scene, std::span<const LayerSpec> specs) {
   const PartNames names(scene);
@@ -266,7 +240,7 @@ std::vector<LayerSpec> default_layer_specs(const Scene& scene) {
   for (const auto& [mover, parts] : groups) {
     LayerSpec spec;
     for (const int part : parts)
-      if (!taken[part]) spec.part_globs.push_back(glob_for(scene.parts[part].name));
+      if (!taken[part]) spec.part_globs.push_back(glob_of_name(scene.parts[part].name));
     if (take_parts(spec, names, taken).parts.empty()) continue;
     spec.name = unused_name(scene, mover.node, used);
     specs.push_back(std::move(spec));

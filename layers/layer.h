@@ -92,7 +92,7 @@ struct SurfacePlane {
 /// can hide whom (layers/visibility.h). Any other number is a group too, at its place in the order.
 enum class OrderGroup { Background = -1, Normal = 0, Foreground = 1 };
 
-/// What an author writes: a name and the globs ('*' any run, '?' one character) of the parts.
+/// What an author writes: a name and the globs of the parts (layers/glob.h).
 struct LayerSpec {
   std::string name;
   std::vector<std::string> part_globs;
@@ -153,10 +153,6 @@ struct LayerSet {
   /// Parts drawn into the shadow maps, ascending; none if no light casts shadows or nothing receives them.
   std::vector<int> casting_parts;
 };
-
-/// True if `text` matches `glob`: '*' is any run of characters, "/" and none included, '?' is one. Cost:
-/// O(glob · text).
-bool glob_matches(const std::string& glob, const std::string& text);
 
 /// Layers from the author's specs, one per spec in the same order, each followed by its shade layers
 /// (layers/shading.h). A part belongs to the first layer that

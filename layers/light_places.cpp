@@ -45,66 +45,32 @@ void for_each_on_cone(const dvec3& axis, double cosine, const Visit& visit) {
   for (const dvec2& turn : ring()) visit(cosine * axis + sine * (turn.x * u + turn.y * v));
 }
 
-/// One face of the body: a plane, and the triangles on it.
-struct HullFace {
-  dvec3 a, ab, ac, normal;
-  bool is_flat = false;  ///< it has no area
-  double radius = 0;     ///< of the face about `a`
-  double least_side = 0;
-  std::span<const std::array<int, 3>> triangles;
+using Triangle = BodySurface::Triangle;
 
-  /// Of the triangle `first` and those that follow it in its plane.
-  HullFace(const BodySurface& body, std::size_t first) : HullFace(body, body.triangles[first]) {
-    std::size_t end = first + 1;
-    while (end < body.triangles.size() && (is_flat || is_in_plane(body, body.triangles[end]))) ++end;
-    triangles = body.triangles.subspan(first, is_flat ? 1 : end - first);
-    measure(body);
-  }
-  double height(const dvec3& p) const { return dot(normal, p - a); }
-
- private:
-  HullFace(const BodySurface& body, const std::array<int, 3>& t)
-      : a(body.points[t[0]]), ab(body.points[t[1]] - a), ac(body.points[t[2]] - a), normal(cross(ab, ac)) {
-    const double area = glm::length(normal);
-    is_flat = !(area > kEdgeOnShare * glm::length(ab) * glm::length(ac)) || !std::isfinite(area);
-    if (!is_flat) normal /= area;
-  }
-  void measure(const BodySurface& body) {
-    double radius2 = 0, side2 = HUGE_VAL;
-    for (const auto& t : triangles) {
-      const dvec3 &p = body.points[t[0]], &q = body.points[t[1]], &r = body.points[t[2]];
-      for (const dvec3& corner : {p, q, r}) radius2 = std::max(radius2, dot(corner - a, corner - a));
-      side2 = std::min({side2, dot(q - p, q - p), dot(r - p, r - p)});
-    }
-    radius = std::sqrt(radius2), least_side = std::sqrt(side2);
-  }
-  /// Opposite faces may follow each other, too.
-  bool is_in_plane(const BodySurface& body, const std::array<int, 3>& t) const {
-    const double size = glm::length(ab) + glm::length(ac);
-    return std::all_of(t.begin(), t.end(), [&](int corner) {
-      return std::fabs(height(body.points[corner])) <= kSamePlane * size;
-    });
-  }
-};
+dvec3 second(const Triangle& t) { return t.a + t.ab; }
+dvec3 third(const Triangle& t) { return t.a + t.ac; }
 
 /// The first crossing of the body by the ray, by Möller & Trumbore 1997. Its distance, or infinity.
 double first_crossing(const BodySurface& body, const dvec3& from, const dvec3& way, SurfacePlace& place) {
   double nearest = HUGE_VAL;
-  for (const auto& t : body.triangles) {
-    const dvec3 a = body.points[t[0]], ab = body.points[t[1]] - a, ac = body.points[t[2]] - a;
-    const dvec3 p = cross(way, ac);
-    const double determinant = dot(ab, p);
-    if (!(std::fabs(determinant) > kEdgeOnShare * glm::length(ab) * glm::length(ac))) continue;
-    const dvec3 to_start = from - a, q = cross(to_start, ab);
-    const double u = dot(to_start, p) / determinant, v = dot(way, q) / determinant;
-    const double distance = dot(ac, q) / determinant;
-    if (!(u >= -kEdgeSlack && v >= -kEdgeSlack && u + v <= 1 + kEdgeSlack && distance > 0 &&
-          distance < nearest))
-      continue;
+  if (body.is_missed_by(from, way)) return nearest;
+  const Triangle* met = nullptr;
+  for (const Triangle& t : body.triangles()) {
+    const dvec3 p = cross(way, t.ac);
+    const double determinant = dot(t.ab, p);
+    if (!(std::fabs(determinant) > t.edge_on)) continue;
+    const dvec3 to_start = from - t.a;
+    const double u = dot(to_start, p) / determinant;
+    if (!(u >= -kEdgeSlack && u <= 1 + 2 * kEdgeSlack)) continue;
+    const dvec3 q = cross(to_start, t.ab);
+    const double v = dot(way, q) / determinant, distance = dot(t.ac, q) / determinant;
+    if (!(v >= -kEdgeSlack && u + v <= 1 + kEdgeSlack && distance > 0 && distance < nearest)) continue;
     nearest = distance;
-    const dvec3 normal = normalize(cross(ab, ac));
-    place = {from + distance * way, dot(normal, way) > 0 ? -normal : normal};
+    met = &t;
   }
+  if (!met) return nearest;
+  const dvec3 normal = normalize(cross(met->ab, met->ac));
+  place = {from + nearest * way, dot(normal, way) > 0 ? -normal : normal};
   return nearest;
 }
 
@@ -141,9 +107,11 @@ void add_foot(const LightState& light, const HullFace& face, const BodySurface& 
 /// Is a place on the plane of the face in one of its triangles, or as near as rounding can bring it there? `far` is
 /// the distance from which it was found.
 bool is_in_face(const BodySurface& body, const HullFace& face, const dvec3& place, double far) {
-  return std::any_of(face.triangles.begin(), face.triangles.end(), [&](const std::array<int, 3>& t) {
-    const dvec3 a = body.points[t[0]], ab = body.points[t[1]] - a, ac = body.points[t[2]] - a, ap = place - a;
-    const double bb = dot(ab, ab), bc = dot(ab, ac), cc = dot(ac, ac), pb = dot(ap, ab), pc = dot(ap, ac);
+  const auto first = body.triangles().begin() + static_cast<std::ptrdiff_t>(face.first);
+  return std::any_of(first, first + static_cast<std::ptrdiff_t>(face.count), [&](const Triangle& t) {
+    const dvec3 ap = place - t.a;
+    const double bb = dot(t.ab, t.ab), bc = dot(t.ab, t.ac), cc = dot(t.ac, t.ac), pb = dot(ap, t.ab),
+                 pc = dot(ap, t.ac);
     const double area2 = bb * cc - bc * bc, slack = kNearFace * (1 + far / std::sqrt(std::min(bb, cc)));
     const double u = cc * pb - bc * pc, v = bb * pc - bc * pb;
     return u >= -slack * area2 && v >= -slack * area2 && u + v <= (1 + 2 * slack) * area2;
@@ -198,18 +166,68 @@ void add_highlight(const LightState& light, const dvec3& eye, double spread, con
 
 }  // namespace
 
+double HullFace::height(const dvec3& p) const { return dot(normal, p - a); }
+
+BodySurface::BodySurface(std::span<const dvec3> points, std::span<const std::array<int, 3>> triangles) {
+  dvec3 lo(HUGE_VAL), hi(-HUGE_VAL);
+  triangles_.reserve(triangles.size());
+  for (const auto& corners : triangles) {
+    const dvec3 a = points[corners[0]], ab = points[corners[1]] - a, ac = points[corners[2]] - a;
+    triangles_.push_back({a, ab, ac, kEdgeOnShare * glm::length(ab) * glm::length(ac)});
+    for (const int corner : corners) lo = glm::min(lo, points[corner]), hi = glm::max(hi, points[corner]);
+  }
+  center_ = 0.5 * (lo + hi), radius_ = 0.5 * glm::length(hi - lo);
+  for (std::size_t first = 0; first < triangles_.size(); first += faces_.back().count)
+    faces_.push_back(face_from(first));
+}
+
+/// Of the triangle `first` and those that follow it in its plane: opposite faces may follow each other, too.
+HullFace BodySurface::face_from(std::size_t first) const {
+  const Triangle& own = triangles_[first];
+  HullFace face{own.a, own.ab, own.ac, cross(own.ab, own.ac), false, 0, 0, first, 1};
+  const double area = glm::length(face.normal);
+  face.is_flat = !(area > own.edge_on) || !std::isfinite(area);
+  if (face.is_flat) return face;
+  face.normal /= area;
+  const double same_plane = kSamePlane * (glm::length(own.ab) + glm::length(own.ac));
+  const auto is_on = [&](const dvec3& corner) { return std::fabs(face.height(corner)) <= same_plane; };
+  const auto is_in_plane = [&](const Triangle& t) {
+    return is_on(t.a) && is_on(second(t)) && is_on(third(t));
+  };
+  while (first + face.count < triangles_.size() && is_in_plane(triangles_[first + face.count])) ++face.count;
+  double radius2 = 0, side2 = HUGE_VAL;
+  for (std::size_t i = first; i < first + face.count; ++i) {
+    const Triangle& t = triangles_[i];
+    for (const dvec3& corner : {t.a, second(t), third(t)})
+      radius2 = std::max(radius2, dot(corner - face.a, corner - face.a));
+    side2 = std::min({side2, dot(t.ab, t.ab), dot(t.ac, t.ac)});
+  }
+  face.radius = std::sqrt(radius2), face.least_side = std::sqrt(side2);
+  return face;
+}
+
+bool BodySurface::is_missed_by(const dvec3& from, const dvec3& way) const {
+  constexpr double kWider = 1.01, kRounding = 1e-13;  // of the radius, of the distance
+  const dvec3 to = center_ - from;
+  const double along = dot(to, way), reach = kWider * radius_ + kRounding * glm::length(to);
+  const dvec3 aside = to - along * way;
+  return dot(aside, aside) > reach * reach || along < -reach;
+}
+
+bool draws_outlines(const LightState& light, const MeanSurface& surface) {
+  if (light.kind == Light::Kind::Ambient || !is_finite(light.position) || !is_finite(light.direction))
+    return false;
+  return light.kind != Light::Kind::Directional || surface.has_specular();
+}
+
 void append_light_places(const LightState& light, const dvec3& eye, const MeanSurface& surface,
                          const BodySurface& body, std::vector<SurfacePlace>& places) {
-  if (light.kind == Light::Kind::Ambient || !layers::is_finite(light.position) ||
-      !layers::is_finite(light.direction))
-    return;
+  if (!draws_outlines(light, surface)) return;
   if (light.kind == Light::Kind::Spot) add_cone(light, body, places);
   const bool has_feet = light.kind == Light::Kind::Point;
   if (!has_feet && !surface.has_specular()) return;
   const double spread = surface.has_specular() ? spread_of_highlight(surface.shininess) : 0;
-  for (std::size_t first = 0; first < body.triangles.size();) {
-    const HullFace face(body, first);
-    first += face.triangles.size();
+  for (const HullFace& face : body.faces()) {
     if (face.is_flat) continue;
     if (has_feet) add_foot(light, face, body, places);
     if (surface.has_specular()) add_highlight(light, eye, spread, face, body, places);

@@ -27,14 +27,45 @@ namespace talisman::layers {
 
 inline constexpr int kRing = 12;
 
-/// The triangles of one convex body, in the world; their normals may point in or out.
-struct BodySurface {
-  std::span<const dvec3> points;
-  std::span<const std::array<int, 3>> triangles;
+/// One face of a body: a plane, and the triangles on it.
+struct HullFace {
+  dvec3 a{0}, ab{0}, ac{0}, normal{0};
+  bool is_flat = false;              ///< it has no area
+  double radius = 0;                 ///< of the face about `a`
+  double least_side = 0;             ///< of its triangles, at their first corners
+  std::size_t first = 0, count = 0;  ///< of the body's triangles
+  double height(const dvec3& p) const;
 };
 
+/// One convex body, in the world, as rays meet it. Its normals may point in or out. A plain value: what it was made of is
+/// not kept. Cost: O(triangles); 0.3 µs for a box.
+class BodySurface {
+ public:
+  BodySurface(std::span<const dvec3> points, std::span<const std::array<int, 3>> triangles);
+
+  struct Triangle {
+    dvec3 a, ab, ac;
+    double edge_on = 0;  ///< below this determinant a ray sees only its edge
+  };
+  const std::vector<Triangle>& triangles() const { return triangles_; }
+  const std::vector<HullFace>& faces() const { return faces_; }
+  /// True: the ray misses an enclosing sphere by more than rounding can bring it there. `way` has unit length.
+  bool is_missed_by(const dvec3& from, const dvec3& way) const;
+
+ private:
+  HullFace face_from(std::size_t first) const;
+
+  std::vector<Triangle> triangles_;
+  std::vector<HullFace> faces_;
+  dvec3 center_{0};
+  double radius_ = 0;
+};
+
+/// Can a light draw such an outline on this surface at all?
+bool draws_outlines(const LightState& light, const MeanSurface& surface);
+
 /// The places of one light, appended. Ambient light has none, directional light only highlights. Cost:
-/// O(triangles · rays): 1 µs for a spot on a box.
+/// O(triangles · rays that meet an enclosing sphere): 1 µs for a spot on a box.
 void append_light_places(const LightState& light, const dvec3& eye, const MeanSurface& surface,
                          const BodySurface& body, std::vector<SurfacePlace>& places);
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "layers/animation.h"
+#include "layers/glob.h"
 #include "sequences/content/factoring/factoring.h"
 #include "sequences/content/own_settings.h"
 #include "sequences/content/value_type.h"
@@ -55,9 +56,7 @@ std::vector<layers::LayerSpec> tagged_specs(const layers::Scene& scene, const st
     if (layer.empty()) continue;
     const auto [entry, is_new] = spec_of.emplace(layer, specs.size());
     if (is_new) specs.push_back({layer, {}, layers::OrderGroup::Normal, {}});
-    std::string glob = part.name;
-    std::replace(glob.begin(), glob.end(), '*', '?');
-    specs[entry->second].part_globs.push_back(glob);
+    specs[entry->second].part_globs.push_back(layers::glob_of_name(part.name));
   }
   return specs;
 }

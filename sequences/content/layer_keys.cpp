@@ -157,7 +157,7 @@ const Table<LayerEntry>& layer_keys() {
                "of the layer")
           .required()
           .key("parts", at(&L::spec, &LayerSpec::part_globs), with_rule(texts(1), "each matches a part"), "",
-               "globs over part names: `*` any run, `?` one character")
+               "globs over part names: `*` any run, `?` one character, `\\*` and `\\?` themselves")
           .required()
           .key("group", at(&L::spec, &LayerSpec::group), group(), "",
                "drawn in this order, whatever hides what")

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/layer_pairs.h"
 
+#include "layers/glob.h"
 #include "sequences/content/nearest_word.h"
 
 namespace talisman::sequences {

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "layers/glob.h"
 #include "layers/layer.h"
 #include "sequences/content/default_view.h"
 #include "sequences/content/images/place_images.h"

@@ -2,6 +2,13 @@
 #include "sequences/content/seams.h"
 
 #include <algorithm>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "layers/check.h"
+#include "layers/glob.h"
 
 namespace talisman::sequences {
 
@@ -13,7 +20,7 @@ void add_seams(layers::Scene& scene, const layers::SeamOptions& options,
     const std::string& name = set.layers[static_cast<std::size_t>(piece.layer)].name;
     const auto spec =
         std::find_if(specs.begin(), specs.end(), [&](const layers::LayerSpec& s) { return s.name == name; });
-    spec->part_globs.push_back(piece.part.name);
+    spec->part_globs.push_back(layers::glob_of_name(piece.part.name));
     piece.part.mesh = static_cast<int>(scene.meshes.size());
     scene.meshes.push_back(std::move(piece.mesh));
     scene.parts.push_back(std::move(piece.part));
@@ -27,6 +34,35 @@ layers::SeamOptions seam_options(const Sequence& sequence) {
   options.frames = sequence.frames;
   options.display_px = sequence.content.display_px.value_or(sequence.display_px);
   return options;
+}
+
+namespace {
+
+/// Undoes add_seams: its parts and meshes are the last ones.
+void remove_seams(layers::Scene& scene, std::vector<layers::LayerSpec>& specs) {
+  std::set<std::string> seams;
+  while (!scene.parts.empty() && scene.parts.back().is_seam) {
+    TALISMAN_CHECK_EQ(scene.parts.back().mesh, static_cast<int>(scene.meshes.size()) - 1);
+    seams.insert(layers::glob_of_name(scene.parts.back().name));
+    scene.parts.pop_back();
+    scene.meshes.pop_back();
+  }
+  for (layers::LayerSpec& spec : specs)
+    std::erase_if(spec.part_globs, [&](const std::string& glob) { return seams.contains(glob); });
+}
+
+}  // namespace
+
+Sequence with_seams_for(Sequence sequence, const Settings& settings) {
+  if (sequence.content.seam.value_or(sequence.seam) != Seam::Auto) return sequence;
+  sequence.content.geometric_px = settings.regulator.thresholds.geometric_px;
+  sequence.content.display_px = settings.view.display_px;
+  layers::Scene scene = *sequence.scene;
+  remove_seams(scene, sequence.layer_specs);
+  add_seams(scene, seam_options(sequence), sequence.layer_specs);
+  sequence.layers = layers::factor(scene, sequence.layer_specs);
+  sequence.scene = std::make_shared<const layers::Scene>(std::move(scene));
+  return sequence;
 }
 
 }  // namespace talisman::sequences

@@ -9,6 +9,7 @@
 #include "layers/layer.h"
 #include "layers/seam.h"
 #include "sequences/content/sequence.h"
+#include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
 
@@ -18,5 +19,10 @@ void add_seams(layers::Scene& scene, const layers::SeamOptions& options,
 
 /// What the sequence and the command line say together.
 layers::SeamOptions seam_options(const Sequence& sequence);
+
+/// The sequence with the seams that a run with these settings needs, as it would be read for it: how far they reach
+/// depends on the threshold, on what layers weigh (`layer_specs`) and on the display. The same scene where it has no seams.
+/// Cost: that of layers::seam_pieces, and a copy of the scene.
+Sequence with_seams_for(Sequence sequence, const Settings& settings);
 
 }  // namespace talisman::sequences

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "layers/glob.h"
 #include "sequences/content/asset_paths.h"
 #include "sequences/content/bare_model.h"
 #include "sequences/content/factoring/factoring.h"

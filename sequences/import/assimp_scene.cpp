@@ -17,6 +17,7 @@
 #include "sequences/import/limits.h"
 #include "sequences/import/lower_case.h"
 #include "sequences/import/recorded_files.h"
+#include "sequences/import/surfaces/unit_normals.h"
 #include "sequences/import/wide_text.h"
 #include "sequences/pictures/srgb.h"
 
@@ -116,12 +117,6 @@ void import_nodes(Import& import, const aiNode* node, int parent, const std::str
 
 layers::vec3 to_float3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-layers::vec3 unit_or_up(const aiVector3D& v) {
-  const layers::vec3 n(v.x, v.y, v.z);
-  const float length = glm::length(n);
-  return length > 1e-12f && std::isfinite(length) ? n / length : layers::vec3(0, 1, 0);
-}
-
 /// The set of coordinates by which the colour map of the mesh is looked up.
 unsigned coordinate_set(const Import& import, const aiMesh& mesh) {
   const aiScene& scene = import.from;
@@ -141,7 +136,7 @@ layers::Mesh import_mesh(const Import& import, const aiMesh& from) {
   const unsigned n = from.mVertices ? from.mNumVertices : 0;
   for (unsigned i = 0; i < n; ++i) mesh.positions.push_back(to_float3(from.mVertices[i]));
   if (from.HasNormals())
-    for (unsigned i = 0; i < n; ++i) mesh.normals.push_back(unit_or_up(from.mNormals[i]));
+    for (unsigned i = 0; i < n; ++i) mesh.normals.push_back(to_float3(from.mNormals[i]));
   if (const unsigned set = coordinate_set(import, from); from.HasTextureCoords(set))
     for (unsigned i = 0; i < n; ++i)
       mesh.uvs.push_back({from.mTextureCoords[set][i].x, from.mTextureCoords[set][i].y});
@@ -223,11 +218,15 @@ void import_skin(Import& import, int mesh_index) {
 }
 
 void import_meshes(Import& import) {
+  std::size_t without_direction = 0;
   for (unsigned i = 0; i < import.from.mNumMeshes; ++i) {
     const aiMesh* mesh = import.from.mMeshes[i];
     import.model.scene.meshes.push_back(mesh ? import_mesh(import, *mesh) : layers::Mesh{});
+    without_direction += make_unit_normals(import.model.scene.meshes.back());
     if (mesh && mesh->mNumBones > 0 && mesh->mBones) import_skin(import, static_cast<int>(i));
   }
+  if (without_direction > 0)
+    import.model.notes.push_back(std::to_string(without_direction) + " " + kWithoutDirection);
 }
 
 void drop_empty_parts(layers::Scene& scene) {

@@ -34,13 +34,23 @@ double distance_to(const layers::WorldBounds& bounds, const dvec3& p) {
 
 double brightest_channel(const layers::vec3& c) { return std::max({c.x, c.y, c.z}); }
 
-/// Lux on the nearest part that faces the light.
+/// Can a spot reach any of the part? A sphere around the bounds against its cone.
+bool is_in_cone(const layers::LightState& light, const layers::WorldBounds& part) {
+  const dvec3 to = 0.5 * (part.lo + part.hi) - light.position;
+  const double distance = glm::length(to), radius = 0.5 * glm::length(part.hi - part.lo);
+  if (distance <= radius) return true;
+  const double off_axis = std::acos(std::clamp(glm::dot(to / distance, light.direction), -1.0, 1.0));
+  return off_axis - std::asin(radius / distance) <= light.outer_cone_rad;
+}
+
+/// Lux on the nearest part that faces the light, and is in its cone.
 double illuminance(const layers::LightState& light, const std::vector<layers::WorldBounds>& parts) {
   const double intensity = brightest_channel(light.color);
   if (light.kind == Light::Kind::Directional) return intensity;
   double nearest = HUGE_VAL;
   for (const layers::WorldBounds& part : parts)
-    if (!part.empty()) nearest = std::min(nearest, distance_to(part, light.position));
+    if (!part.empty() && (light.kind != Light::Kind::Spot || is_in_cone(light, part)))
+      nearest = std::min(nearest, distance_to(part, light.position));
   return std::isfinite(nearest) ? intensity * layers::falloff(light, nearest) : 0;
 }
 

@@ -6,7 +6,7 @@
 /// One exposure per file: the largest illuminance shows 1 on a white surface that faces it.
 ///
 ///   E = lux of a directional light;  of a point or spot  I · falloff(d),  d from the lamp to the nearest part's
-///   bounds, at least 0.1 of that part's radius
+///   bounds, at least 0.1 of that part's radius; of a spot, of the parts whose enclosing sphere its cone touches
 ///
 /// All lights are divided by it, so their ratios stay. The key or option `exposure` of whoever shows the file puts
 /// another illuminance in its place.

@@ -8,6 +8,7 @@
 #include "sequences/files/number_text.h"
 #include "sequences/import/gltf_compression.h"
 #include "sequences/import/gltf_scene.h"
+#include "sequences/import/surfaces/unit_normals.h"
 
 namespace talisman::sequences {
 
@@ -28,11 +29,6 @@ std::vector<layers::vec3> vectors_of(GltfImport& import, int accessor, const cha
   std::vector<layers::vec3> vectors;
   for (std::size_t i = 0; i < from.count; ++i) vectors.push_back(vector_at(from, i));
   return vectors;
-}
-
-layers::vec3 unit_or_up(const layers::vec3& n) {
-  const float length = glm::length(n);
-  return length > 1e-12f && std::isfinite(length) ? n / length : layers::vec3(0, 1, 0);
 }
 
 void check_count(const char* what, const Accessed& from, std::size_t vertices) {
@@ -285,7 +281,7 @@ int add_primitive(GltfImport& import, const Json& primitive, const std::string& 
   if (mesh.indices.empty()) return -1;
   mesh.name = name;
   if (!import.morph_animated.contains(node)) bake_morphs(weights, mesh);
-  for (layers::vec3& normal : mesh.normals) normal = unit_or_up(normal);
+  if (make_unit_normals(mesh) > 0) import.lacks(kWithoutDirection, mesh.name);
   if (const std::string lacking = finish_gltf_tangents(maps_of(import, material_of(import, primitive)), mesh);
       !lacking.empty())
     import.lacks(lacking, mesh.name);

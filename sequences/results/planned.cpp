@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/planned.h"
 
+#include "sequences/content/seams.h"
 #include "sequences/pipeline/make_pipeline.h"
 #include "sequences/pipeline/step.h"
 
@@ -26,7 +27,8 @@ void plan_frames(const Sequence& sequence, const Settings& settings, const Frame
 
 Summary planned(const Sequence& sequence, const Settings& settings, const FrameRange& range,
                 const std::function<void(const FrameReport&)>& also) {
-  const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, settings);
+  const Sequence seamed = with_seams_for(sequence, settings);
+  const Pipeline pipeline = make_pipeline(*seamed.scene, seamed.layers, settings);
   Summary summary = start_summary(pipeline, sequence.name);
   summary.planned_only = true;
   plan_in(pipeline, range, [&](const FrameReport& report, const PipelineState& state) {

@@ -20,7 +20,8 @@ struct FrameRange {
 void plan_frames(const Sequence& sequence, const Settings& settings, const FrameRange& range,
                  const std::function<void(const FrameReport&, const PipelineState&)>& show);
 
-/// The summary that `plan` would write, but for the times. `also` sees each frame of the range.
+/// The summary that `plan` would write, but for the times: seams are those that the settings need (content/seams.h). `also`
+/// sees each frame of the range.
 Summary planned(const Sequence& sequence, const Settings& settings, const FrameRange& range,
                 const std::function<void(const FrameReport&)>& also = nullptr);
 

@@ -8,6 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "layers/glob.h"
 #include "tests/support/scenes.h"
 
 namespace talisman::layers {
@@ -82,9 +83,36 @@ TEST(GlobMatches, EmptyGlobOnlyEmptyText) {
   EXPECT_FALSE(glob_matches("", "a"));
 }
 
-// Against a plain recursion, on a two-letter alphabet where almost everything nearly matches.
+TEST(GlobMatches, BackslashMakesAWildcardMeanItself) {
+  EXPECT_TRUE(glob_matches("leg\\?", "leg?"));
+  EXPECT_FALSE(glob_matches("leg\\?", "leg1"));
+  EXPECT_TRUE(glob_matches("*\\*", "ab*"));
+  EXPECT_FALSE(glob_matches("*\\*", "ab"));
+  EXPECT_TRUE(glob_matches("a\\b\\", "a\\b\\")) << "before anything else it is itself";
+  EXPECT_TRUE(has_wildcard("\\*?"));
+  EXPECT_FALSE(has_wildcard("\\*\\?"));
+}
+
+TEST(GlobMatches, GlobOfANameMatchesThatNameAlone) {
+  const std::string letters = "a*?\\";
+  std::vector<std::string> names;
+  for (int k = 0; k < 4 * 4 * 4 * 4; ++k) {
+    std::string& name = names.emplace_back();
+    for (int i = 0, rest = k; i < 4; ++i, rest /= 4) name += letters[rest % 4];
+  }
+  for (const std::string& name : names) {
+    const std::string glob = glob_of_name(name);
+    EXPECT_FALSE(has_wildcard(glob)) << name;
+    EXPECT_EQ(name_of_glob(glob), name);
+    for (const std::string& other : names) ASSERT_EQ(glob_matches(glob, other), name == other) << name;
+  }
+}
+
+// Against a plain recursion, on a small alphabet where almost everything nearly matches.
 bool matches_slowly(const std::string& glob, const std::string& text) {
   if (glob.empty()) return text.empty();
+  if (glob[0] == '\\' && glob.size() > 1 && (glob[1] == '*' || glob[1] == '?'))
+    return !text.empty() && glob[1] == text[0] && matches_slowly(glob.substr(2), text.substr(1));
   if (glob[0] == '*')
     return matches_slowly(glob.substr(1), text) || (!text.empty() && matches_slowly(glob, text.substr(1)));
   return !text.empty() && (glob[0] == '?' || glob[0] == text[0]) &&
@@ -92,13 +120,13 @@ bool matches_slowly(const std::string& glob, const std::string& text) {
 }
 
 TEST(GlobMatches, AgreesWithTheDefinitionOnAllShortStrings) {
-  const std::string letters = "ab*?";
+  const std::string letters = "a*?\\";
   int matched = 0;
   for (int g = 0; g < 4 * 4 * 4 * 4 * 4; ++g)
-    for (int t = 0; t < 64; ++t) {
+    for (int t = 0; t < 4 * 4 * 4 * 4; ++t) {
       std::string glob, text;
       for (int i = 0, rest = g; i < 5; ++i, rest /= 4) glob += letters[rest % 4];
-      for (int i = 0, rest = t; i < 6; ++i, rest /= 2) text += letters[rest % 2];
+      for (int i = 0, rest = t; i < 4; ++i, rest /= 4) text += letters[rest % 4];
       ASSERT_EQ(glob_matches(glob, text), matches_slowly(glob, text)) << glob << " " << text;
       matched += glob_matches(glob, text);
     }

@@ -173,6 +173,34 @@ TEST(LightPlaces, NoPlaceOfAHighlightIsMissed) {
   EXPECT_GT(std::min({outside, partly, inside}), 200);
 }
 
+/// Does a ray meet the box from -1 to 1?  By slabs [Kay & Kajiya 1986].
+bool meets_box(const dvec3& from, const dvec3& way) {
+  double enters = 0, leaves = HUGE_VAL;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double a = (-1 - from[axis]) / way[axis], b = (1 - from[axis]) / way[axis];
+    enters = std::max(enters, std::min(a, b)), leaves = std::min(leaves, std::max(a, b));
+  }
+  return enters < leaves;
+}
+
+TEST(LightPlaces, NoRayThatMeetsABodyIsTakenToMissIt) {
+  const layers::Polyhedron box = layers::bounding_polyhedron(box_corners({1, 1, 1}), layers::BoundKind::Box8);
+  const BodySurface body(box.points, box.triangles);
+  std::mt19937 random(15);
+  std::uniform_real_distribution<double> unit(-1, 1), power(-2, 7);
+  int met = 0, missed = 0;
+  for (int run = 0; run < 60'000; ++run) {
+    const dvec3 from = std::pow(10.0, power(random)) * dvec3(unit(random), unit(random), unit(random));
+    const dvec3 at = 3.0 * dvec3(unit(random), unit(random), unit(random));
+    const dvec3 way = glm::normalize(run % 5 == 0 ? from - at : at - from);
+    const bool is_met = meets_box(from, way), is_missed = body.is_missed_by(from, way);
+    ASSERT_FALSE(is_met && is_missed) << run;
+    met += is_met, missed += is_missed;
+  }
+  EXPECT_GT(met, 10'000);
+  EXPECT_GT(missed, 10'000);
+}
+
 TEST(LightPlaces, LampInARoomLightsItsWalls) {
   const layers::Polyhedron room =
       layers::bounding_polyhedron(box_corners({3, 2, 3}), layers::BoundKind::Box8);

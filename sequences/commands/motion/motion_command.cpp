@@ -5,6 +5,7 @@
 #include <cmath>
 #include <ostream>
 
+#include "layers/glob.h"
 #include "sequences/commands/words.h"
 #include "sequences/content/factoring/layers_yaml.h"
 #include "sequences/content/own_settings.h"
@@ -51,9 +52,11 @@ std::vector<layers::LayerSpec> layers_of_groups(const Sequence& sequence, const 
   std::vector<layers::LayerSpec> specs;
   for (const std::vector<int>& group : study.groups) {
     layers::LayerSpec spec;
-    for (const int i : group)
-      spec.part_globs.push_back(sequence.scene->parts[study.followed.parts[i].part].name);
-    spec.name = spec.part_globs.front();
+    const auto name_of = [&](int i) -> const std::string& {
+      return sequence.scene->parts[study.followed.parts[i].part].name;
+    };
+    for (const int i : group) spec.part_globs.push_back(layers::glob_of_name(name_of(i)));
+    spec.name = name_of(group.front());
     specs.push_back(std::move(spec));
   }
   return specs;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "layers/glob.h"
 #include "sequences/content/starter/yaml_page.h"
 #include "sequences/content/value_type.h"
 
@@ -109,10 +110,7 @@ void add_layer(YamlPage& page, const LayerSpec& spec, const std::vector<std::str
   if (!spec.casts_shadows) key("casts_shadows", "false");
 }
 
-std::string glob_of_name(std::string name) {
-  std::replace(name.begin(), name.end(), '*', '?');
-  return yaml_text(name);
-}
+std::string yaml_glob_of(const std::string& name) { return yaml_text(layers::glob_of_name(name)); }
 
 }  // namespace
 
@@ -124,8 +122,8 @@ std::string order_yaml(std::span<const LayerSpec> specs, std::span<const SpecPai
   YamlPage page;
   page.key("", "order", order.empty() ? "[]" : "");
   for (const auto& [behind, front] : order)
-    page.line("  - {behind: " + glob_of_name(specs[behind].name) +
-              ", front: " + glob_of_name(specs[front].name) + "}");
+    page.line("  - {behind: " + yaml_glob_of(specs[behind].name) +
+              ", front: " + yaml_glob_of(specs[front].name) + "}");
   return page.text();
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "layers/animation.h"
+#include "layers/glob.h"
 #include "sequences/content/default_view.h"
 #include "sequences/content/starter/part_globs.h"
 
@@ -20,11 +21,6 @@ using layers::WorldBounds;
 /// Parts of one body touch: their boxes, in the space of what carries them, are no farther apart than this share of
 /// the larger one's diagonal.
 constexpr double kTouch = 0.05;
-
-std::string glob_of(std::string name) {
-  std::replace(name.begin(), name.end(), '*', '?');
-  return name;
-}
 
 /// `kept` takes its parts first; the pieces are those of `own` that are left any.
 Pieces pieces_between(const layers::Scene& scene, std::span<const LayerSpec> kept,
@@ -129,7 +125,7 @@ Pieces pieces_of(const layers::Scene& scene, std::span<const LayerSpec> kept) {
   std::vector<LayerSpec> own;
   std::set<std::string> seen;
   for (const layers::Part& part : scene.parts)
-    if (seen.insert(part.name).second) own.emplace_back().part_globs = {glob_of(part.name)};
+    if (seen.insert(part.name).second) own.emplace_back().part_globs = {layers::glob_of_name(part.name)};
   return pieces_between(scene, kept, own);
 }
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "layers/glob.h"
 #include "layers/layer.h"
 #include "sequences/content/asset_paths.h"
 #include "sequences/content/images/image_recipe.h"

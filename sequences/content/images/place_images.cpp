@@ -7,6 +7,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "layers/glob.h"
 #include "sequences/content/images/picture_source.h"
 #include "sequences/content/nearest_word.h"
 #include "sequences/files/errors.h"
@@ -181,8 +182,9 @@ void add_image_layers(const std::vector<ImageRecipe>& images, std::vector<layers
     };
     auto spec = std::find_if(specs.begin(), specs.end(), takes);
     if (spec == specs.end())
-      spec =
-          specs.insert(specs.end(), layers::LayerSpec{image.id, {image.id}, layers::OrderGroup::Normal, {}});
+      spec = specs.insert(
+          specs.end(),
+          layers::LayerSpec{image.id, {layers::glob_of_name(image.id)}, layers::OrderGroup::Normal, {}});
     if (image.screen_px && spec->name == image.id)
       spec->group = image.behind ? layers::OrderGroup::Background : layers::OrderGroup::Foreground;
   }

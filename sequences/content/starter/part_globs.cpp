@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/starter/part_globs.h"
+#include "layers/glob.h"
 
 #include <algorithm>
 #include <cctype>
@@ -7,11 +8,6 @@
 namespace talisman::sequences {
 
 namespace {
-
-std::string as_glob(std::string name) {
-  std::replace(name.begin(), name.end(), '*', '?');
-  return name;
-}
 
 std::string common_beginning(const std::vector<int>& parts, const std::vector<std::string>& names) {
   std::string common = names[parts.front()];
@@ -43,11 +39,11 @@ std::vector<std::string> globs_of(const std::vector<int>& parts, const std::vect
                                   const std::vector<bool>& taken) {
   const std::string common = parts.size() > 1 ? common_beginning(parts, names) : "";
   for (std::size_t at = 1; at <= common.size(); ++at) {
-    const std::string glob = as_glob(common.substr(0, at)) + "*";
+    const std::string glob = layers::glob_of_name(common.substr(0, at)) + "*";
     if (is_cut(common, at) && names_alone(glob, parts, names, taken)) return {glob};
   }
   std::vector<std::string> globs;
-  for (const int part : parts) globs.push_back(as_glob(names[part]));
+  for (const int part : parts) globs.push_back(layers::glob_of_name(names[part]));
   return globs;
 }
 

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "layers/glob.h"
 #include "sequences/content/factoring/factoring.h"
 
 namespace talisman::sequences {
@@ -52,14 +53,6 @@ LayerSpec spec_like(const LayerSpec& author, const std::string& name) {
   return spec;
 }
 
-/// As a glob a name may match others as well, if it has a wildcard in it.
-bool names_itself_alone(const layers::Scene& scene, const std::string& name) {
-  if (name.find_first_of("*?") == std::string::npos) return true;
-  return std::none_of(scene.parts.begin(), scene.parts.end(), [&name](const layers::Part& part) {
-    return part.name != name && layers::glob_matches(name, part.name);
-  });
-}
-
 bool is_among(const layers::ExplicitPair& pair, const std::vector<layers::ExplicitPair>& pairs) {
   return std::any_of(pairs.begin(), pairs.end(), [&pair](const layers::ExplicitPair& other) {
     return other == pair || other == layers::ExplicitPair{pair.front, pair.behind};
@@ -73,8 +66,8 @@ void add_seen_order(const Settings& settings, Sequence& parts) {
   for (const layers::Layer& layer : parts.layers.layers) id_of[layer.name] = layer.id;
   const std::vector<layers::ExplicitPair> authored = parts.explicit_order;
   for (const auto& [behind, front] : found.pairs()) {
-    const auto b = id_of.find(found.specs[behind].part_globs.front()),
-               f = id_of.find(found.specs[front].part_globs.front());
+    const auto b = id_of.find(layers::name_of_glob(found.specs[behind].part_globs.front())),
+               f = id_of.find(layers::name_of_glob(found.specs[front].part_globs.front()));
     if (b == id_of.end() || f == id_of.end()) continue;
     const bool same_group = parts.layers.layers[b->second].group == parts.layers.layers[f->second].group;
     if (same_group && !is_among({b->second, f->second}, authored))
@@ -92,11 +85,10 @@ std::optional<Sequence> one_layer_per_part(const Sequence& sequence, const Setti
   for (std::size_t i = 0; i < authored.size(); ++i)
     for (const int part : authored[i]->parts) {
       const std::string& name = sequence.scene->parts[part].name;
-      if (!names_itself_alone(*sequence.scene, name)) return std::nullopt;
       const auto [it, is_new] = spec_of.try_emplace(name, static_cast<int>(specs.size()));
       if (!is_new) continue;
       specs.push_back(spec_like(sequence.layer_specs[i], name));
-      specs.back().part_globs = {name};
+      specs.back().part_globs = {layers::glob_of_name(name)};
       made_of[authored[i]->id].push_back(it->second);
     }
   if (specs.size() > kMostParts) return std::nullopt;

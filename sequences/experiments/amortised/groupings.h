@@ -5,8 +5,7 @@
 ///
 /// Each new layer has the group and the wishes of the author's layer that its parts came from; shading that had layers of its
 /// own is in the surface again. Where the bounds of two parts know no order, it is the one in which they are seen
-/// (content/factoring/seen_order.h). Parts of one name stay together, since they are named by globs; a part whose name has '*' or
-/// '?' in it may match others, and then cannot be named alone.
+/// (content/factoring/seen_order.h). Parts of one name stay together, since they are named by globs.
 
 #include <optional>
 #include <string>
@@ -17,7 +16,7 @@
 
 namespace talisman::sequences {
 
-/// Empty: some part cannot be named alone, or there are more than kMostParts.
+/// Empty: there are more than kMostParts.
 std::optional<Sequence> one_layer_per_part(const Sequence& sequence, const Settings& settings);
 inline constexpr std::size_t kMostParts = 1000;
 

@@ -205,8 +205,7 @@ AmortisedExperiment measure_amortised(const Sequence& sequence, const Settings& 
                                       const ExperimentFrames& frames, ProgressKind progress) {
   AmortisedExperiment experiment{sequence.name, settings.view.display_px, frames, {}, {}, 0};
   const Groupings groupings{sequence, one_layer_per_part(sequence, settings), one_layer_per_group(sequence)};
-  if (!groupings.parts)
-    experiment.left_out = "one per part: a part cannot be named alone, or there are too many";
+  if (!groupings.parts) experiment.left_out = "one per part: there are too many";
   std::vector<AmortisedSetting> compared = amortised_settings(groupings, settings.regulator);
   const chunker::PreparedScene prepared(*sequence.scene, settings.render);
   const std::map<int, Image8> truth = truth_of(sequence, settings, frames, prepared);

@@ -6,6 +6,7 @@
 #include "regulator/profile.h"
 #include "sequences/experiments/predictive/measured.h"
 #include "sequences/experiments/regulator/popping.h"
+#include "sequences/experiments/seamed_sequence.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/diff.h"
 #include "sequences/pipeline/predictive/plan_buffers.h"
@@ -49,13 +50,15 @@ PredictiveSetting sprite_setting(const regulator::RegulatorOptions& base, Policy
 class PredictiveRun {
  public:
   PredictiveRun(const Sequence& sequence, Settings settings, const PredictiveSetting& setting)
-      : pipeline_(make_pipeline(*sequence.scene, sequence.layers, with(std::move(settings), setting))),
+      : seamed_(sequence, with(settings, setting)),
+        pipeline_(make_pipeline(*seamed_.sequence().scene, seamed_.sequence().layers,
+                                with(std::move(settings), setting))),
         state_(pipeline_) {
     result_.setting = setting;
   }
 
   void advance(int frame, const chunker::PreparedScene* prepared, bool counts) {
-    report_ = step(pipeline_, state_, frame, prepared);
+    report_ = step(pipeline_, state_, frame, prepared ? &seamed_.prepared(*prepared) : nullptr);
     before_ = std::move(now_);
     now_ = prepared ? to_image8(report_.picture) : Image8{};
     if (!counts) return;
@@ -120,6 +123,7 @@ class PredictiveRun {
     result_.draws += decision.action == regulator::Action::Rerender;
   }
 
+  SeamedSequence seamed_;
   Pipeline pipeline_;
   PipelineState state_;
   FrameReport report_;

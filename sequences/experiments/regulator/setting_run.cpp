@@ -26,14 +26,16 @@ Timing timing_of(const std::vector<FrameLine>& lines, double FrameTimes::*stage)
 
 SettingRun::SettingRun(const Sequence& sequence, Settings settings, const RegulatorSetting& setting)
     : setting_(setting),
-      pipeline_(make_pipeline(*sequence.scene, sequence.layers, with(std::move(settings), setting))),
+      seamed_(sequence, with(settings, setting)),
+      pipeline_(make_pipeline(*seamed_.sequence().scene, seamed_.sequence().layers,
+                              with(std::move(settings), setting))),
       state_(pipeline_),
       summary_(start_summary(pipeline_, sequence.name)) {}
 
 void SettingRun::advance(int frame, const chunker::PreparedScene* prepared) {
   layers_before_.clear();
   for (const ShownSprite& sprite : report_.shown) layers_before_.push_back(sprite.layer);
-  report_ = step(pipeline_, state_, frame, prepared);
+  report_ = step(pipeline_, state_, frame, prepared ? &seamed_.prepared(*prepared) : nullptr);
   before_ = std::move(now_);
   now_ = prepared ? to_image8(report_.picture) : Image8{};
 }

@@ -10,21 +10,21 @@
 
 #include "sequences/content/sequence.h"
 #include "sequences/experiments/regulator/measured.h"
+#include "sequences/experiments/seamed_sequence.h"
 #include "sequences/pictures/diff.h"
 #include "sequences/pipeline/step.h"
 #include "sequences/results/summary.h"
 
 namespace talisman::sequences {
 
-/// Keeps references to the sequence.
 class SettingRun {
  public:
-  /// `settings` holds all that `setting` does not say.
+  /// `settings` holds all that `setting` does not say. Seams are those that this setting needs (content/seams.h).
   SettingRun(const Sequence& sequence, Settings settings, const RegulatorSetting& setting);
   SettingRun(const SettingRun&) = delete;
   SettingRun& operator=(const SettingRun&) = delete;
 
-  /// Plans frame `frame`, and draws it where `prepared` is given.
+  /// Plans frame `frame`, and draws it where `prepared` is given: the scene of the sequence as it was given.
   void advance(int frame, const chunker::PreparedScene* prepared);
 
   /// The frame of the last advance belongs to what is measured.
@@ -49,6 +49,7 @@ class SettingRun {
 
  private:
   RegulatorSetting setting_;
+  SeamedSequence seamed_;
   Pipeline pipeline_;
   PipelineState state_;
   Summary summary_;

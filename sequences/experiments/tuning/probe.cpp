@@ -97,6 +97,8 @@ bool QualityProbe::draw(const PlannedThresholds& plan, const std::vector<bool>& 
   const Variant variant = with_thresholds(sequence_, settings_, plan.thresholds);
   const Pipeline pipeline = make_pipeline(*variant.sequence.scene, variant.sequence.layers, variant.settings);
   PipelineState state(pipeline);
+  std::optional<chunker::PreparedScene> own;  // where its seams are others
+  if (variant.sequence.scene.get() != &prepared_.scene()) own.emplace(*variant.sequence.scene);
   QualityOptions options;
   options.ssim = false;
   options.flip = goal_.kind == GoalKind::Flip;
@@ -105,7 +107,7 @@ bool QualityProbe::draw(const PlannedThresholds& plan, const std::vector<bool>& 
     const bool is_drawn = frame >= range_.first && wanted[k];
     constexpr int kTruthAndPicture = 2;
     if (is_drawn && (frames_left() < kTruthAndPicture || is_stopped())) return false;
-    const FrameReport report = step(pipeline, state, frame, is_drawn ? &prepared_ : nullptr);
+    const FrameReport report = step(pipeline, state, frame, is_drawn ? &(own ? *own : prepared_) : nullptr);
     if (!is_drawn) continue;
     ++drawn_;
     ++probed.frames_drawn;

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 #include <glm/matrix.hpp>
 
 #include "regulator/profile.h"
+#include "sequences/content/seams.h"
 #include "sequences/experiments/effect_removal.h"
 #include "sequences/files/content_hash.h"
 #include "sequences/files/number_text.h"
@@ -56,6 +58,7 @@ Variant with_thresholds(const Sequence& sequence, const Settings& settings,
     weight = thresholds.weights[k];
   }
   if (is_other) factor_again(variant);
+  variant.sequence = with_seams_for(std::move(variant.sequence), variant.settings);
   return variant;
 }
 

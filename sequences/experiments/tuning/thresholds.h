@@ -30,7 +30,8 @@ std::vector<double> tuned_grid();
 /// With three significant digits, as it is printed: what is pasted is what was tried.
 double as_printed(double value);
 
-/// The sequence and its settings with these thresholds, factored again where weights differ from its own.
+/// The sequence and its settings with these thresholds, factored again where weights differ from its own,
+/// with the seams that they need.
 Variant with_thresholds(const Sequence& sequence, const Settings& settings,
                         const TriedThresholds& thresholds);
 

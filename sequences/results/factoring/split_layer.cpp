@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <set>
 
+#include "layers/glob.h"
 #include "sequences/content/nearest_word.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/number_text.h"
@@ -116,7 +117,7 @@ SplitSequence split_layer(const Sequence& sequence, const std::string& layer) {
   for (std::size_t i = 0; i < parts.size(); ++i) {
     LayerSpec piece = whole;
     piece.name = free_name(parts[i], specs);
-    piece.part_globs = {parts[i]};
+    piece.part_globs = {layers::glob_of_name(parts[i])};
     split.pieces.push_back(piece.name);
     specs.insert(specs.begin() + static_cast<std::ptrdiff_t>(at + i), piece);
   }

@@ -145,7 +145,8 @@ TEST_F(TwoRuns, DiffOfPlansSaysWhatIsDifferentWithoutPictures) {
   EXPECT_EQ(runs["decided_otherwise"].size(), different);
   EXPECT_EQ(runs["decisions"], places.size());
   // What each layer cost in renders is that of its own summary.
-  for (const Json& layer : Json::parse(read("b/summary.json"))["layers"])
+  const Json summary = Json::parse(read("b/summary.json"));
+  for (const Json& layer : summary["layers"])
     for (const Json& row : runs["layers"])
       EXPECT_TRUE(row["layer"] != layer["name"] || row["renders_b"] == layer["renders"]) << row.dump();
 }

@@ -79,7 +79,7 @@ chunker::Frame ramp_with_step(double ramp_px, double step_px, double step) {
   for (int y = 0; y < frame.height; ++y)
     for (int x = 0; x < frame.width; ++x) {
       const double light = 0.05 + 0.012 * (x - ramp_px) + step * std::clamp(x - 35 - step_px, 0.0, 1.0);
-      const auto c = static_cast<std::uint16_t>(light * chunker::kOne);
+      const auto c = static_cast<std::uint16_t>(std::min(light, 1.0) * chunker::kOne);
       frame.pixels.push_back({c, c, c, static_cast<std::uint16_t>(chunker::kOne)});
     }
   return frame;

@@ -47,6 +47,18 @@ TEST(Factoring, TwoRigidBodiesAreTwoLayers) {
 }
 
 // The display is the same at every scale: so are the layers, and what they cost.
+// As a pattern the first of these names would take the others too.
+TEST(Factoring, WildcardsInNamesAreThemselves) {
+  FactoredScene s;
+  const char* const names[] = {"*", "?", "a*"};
+  for (int i = 0; i < 3; ++i)
+    s.moves(s.part(names[i], {3.0 * i - 3, 2.0 - 2 * i, 0}), {0.02 * (i - 1), 0, 0.1 * i});
+  for (const FactoringWay way : {FactoringWay::Velocity, FactoringWay::Node, FactoringWay::Amortised})
+    EXPECT_THAT(s.parts_of(s.study(3, way).chosen),
+                UnorderedElementsAre(ElementsAre("*"), ElementsAre("?"), ElementsAre("a*")))
+        << static_cast<int>(way);
+}
+
 TEST(Factoring, TheUnitOfLengthIsOfNoConcern) {
   const FactoredScene s = two_bodies();
   const FactoringStudy as_it_is = s.study();
