@@ -34,9 +34,8 @@ class DiskFaults : public Tool {
   }
   /// The n-th operation on a file of the folder `out` fails; 0: none.
   std::string disk(int n, const std::string& out) const {
-    const std::string shim = fs::path(tool()).parent_path().string() + "/failing_disk.so";
-    return "env LD_PRELOAD='" + shim + "' FAULT_BELOW='" + path(out) + "' FAULT_AT=" + std::to_string(n) +
-           " FAULT_COUNT='" + path("count") + "'";
+    return on_failing_disk("FAULT_BELOW='" + path(out) + "' FAULT_AT=" + std::to_string(n) +
+                           " FAULT_COUNT='" + path("count") + "'");
   }
   /// All files below a folder that two runs of the same must share.
   std::map<std::string, std::string> results(const std::string& out) const {

@@ -67,12 +67,18 @@ class Tool : public ::testing::Test {
     return outcome;
   }
 
+  /// What stands before a command that runs on a disk with faults (tests/sequences/faults/failing_disk.cpp). The address
+  /// sanitizer would else insist on being loaded first.
+  static std::string on_failing_disk(const std::string& settings) {
+    const std::string shim = std::filesystem::path(tool()).parent_path().string() + "/failing_disk.so";
+    return "env ASAN_OPTIONS=\"verify_asan_link_order=0:$ASAN_OPTIONS\" LD_PRELOAD='" + shim + "' " +
+           settings;
+  }
+
   /// Runs the tool, which gets the signal in the very operation that makes `file`: on any machine at the same instant.
   Outcome run_and_signal(const std::string& arguments, const std::string& file, int signal) const {
-    const std::string shim = std::filesystem::path(tool()).parent_path().string() + "/failing_disk.so";
     const Outcome outcome =
-        run(arguments, "ASAN_OPTIONS=\"verify_asan_link_order=0:$ASAN_OPTIONS\" LD_PRELOAD='" + shim +
-                           "' SIGNAL_AT='" + path(file) + "' SIGNAL=" + std::to_string(signal));
+        run(arguments, on_failing_disk("SIGNAL_AT='" + path(file) + "' SIGNAL=" + std::to_string(signal)));
     if (signal == SIGKILL) {
       EXPECT_EQ(outcome.exit_code, 128 + SIGKILL) << file << " was not made";
     }

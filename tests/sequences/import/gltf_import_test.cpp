@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What glTF 2.0 says, on files of a few triangles whose right values are worked out by hand.
 #include <cmath>
-#include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,7 +10,6 @@
 namespace talisman::sequences {
 namespace {
 
-using ::testing::Contains;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
@@ -45,42 +43,6 @@ Gltf textured() {
   file.json["materials"] =
       Json::array({{{"name", "paint"}, {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}}});
   return file;
-}
-
-// --- Surfaces and light
-
-// Black without a word, if its direction were left to chance: a square that faces +z.
-TEST(GltfNormals, WithoutADirectionAreThoseOfTheTrianglesAndItIsSaid) {
-  Gltf file;
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  file.primitive()["attributes"]["NORMAL"] =
-      file.add<float>({0, 0, 0, 0, 0, 2, nan, 0, 0, 1e-20f, 0, 0}, 5126, "VEC3");
-  const ImportedModel model = file.import();
-  for (const layers::vec3& normal : only_mesh(model).normals) EXPECT_EQ(normal, layers::vec3(0, 0, 1));
-  EXPECT_THAT(model.warnings,
-              Contains(HasSubstr("normals without a direction are those of their triangles")));
-}
-
-// 100 cd at 2 m before the square are 25 lx; the spot beside it, a hundred times as strong, lights nothing.
-TEST(GltfExposure, IsNotThatOfASpotWhoseConeMissesAll) {
-  for (const bool misses : {true, false}) {
-    Gltf file;
-    file.json["extensionsUsed"] = {"KHR_lights_punctual"};
-    const Json spot = {{"type", "spot"}, {"intensity", 10000}, {"spot", {{"outerConeAngle", 0.2}}}};
-    file.json["extensions"]["KHR_lights_punctual"]["lights"] =
-        Json::array({{{"type", "point"}, {"intensity", 100}}, spot});
-    const auto lamp = [](int light, std::vector<double> at, std::vector<double> turn) {
-      return Json{{"translation", at},
-                  {"rotation", turn},
-                  {"extensions", {{"KHR_lights_punctual", {{"light", light}}}}}};
-    };
-    file.json["nodes"].push_back(lamp(0, {0, 0, 2}, {0, 0, 0, 1}));
-    // Shines along -z, or turned by half a turn, away from the square.
-    file.json["nodes"].push_back(
-        lamp(1, {0, 0, 2}, misses ? std::vector<double>{1, 0, 0, 0} : std::vector<double>{0, 0, 0, 1}));
-    file.json["scenes"][0]["nodes"] = {0, 1, 2};
-    EXPECT_NEAR(file.import().exposure_lx, misses ? 25 : 2500, 1e-3) << misses;
-  }
 }
 
 // --- Accessors
