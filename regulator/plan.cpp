@@ -210,8 +210,12 @@ std::string first_defect(const RegulatorOptions& options) {
     return broken("settle_frames", options.settle_frames, "0 (off) or at least 1");
   if (std::string defect = first_defect(options.thresholds); !defect.empty()) return defect;
   if (options.lookahead.frames < 0) return broken("lookahead_frames", options.lookahead.frames, "at least 0");
-  if (options.policy == Policy::Predictive)
+  if (options.policy == Policy::Predictive) {
     if (std::string defect = first_defect(plan_shape(options)); !defect.empty()) return defect;
+    if (options.predictive.intervals == Intervals::Data && options.lookahead.frames > kLongestCut_frames)
+      return "lookahead is " + std::to_string(options.lookahead.frames) + ", must be at most " +
+             std::to_string(kLongestCut_frames) + " where intervals is data";
+  }
   if (std::string defect = first_defect(options.regroup); !defect.empty()) return defect;
   return first_defect(options.budget);
 }

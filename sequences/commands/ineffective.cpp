@@ -48,7 +48,7 @@ std::vector<Group> groups_of(const CommandLine& line) {
                                {{Interpolate}, {}},
                                {{Interpolate, Threshold, Lookahead, Oracle}, {}},
                                {{Predictive}, {}},
-                               {{Lookahead}, {}},
+                               {{Lookahead, Predictive}, {}},
                                {{Threshold}, {}}};
   Given(groups[0].given)("--hold", line.hold);
   Given(groups[1].given)("--lookahead", line.lookahead);
@@ -62,8 +62,8 @@ std::vector<Group> groups_of(const CommandLine& line) {
       "--turned-px", line.turned_px)("--color-warp", line.color_warp);
   Given(groups[6].given)("--stagger", line.stagger);
   Given(groups[7].given)("--blend", line.blend);
-  Given(groups[8].given)("--tree-k", line.tree_k)("--joining", line.joining)("--motion-norm",
-                                                                             line.motion_norm);
+  Given(groups[8].given)("--tree-k", line.tree_k)("--joining", line.joining)(
+      "--motion-norm", line.motion_norm)("--intervals", line.intervals)("--adaptive", line.adaptive);
   Given(groups[9].given)("--predict", line.predict);
   Given(groups[10].given)("--regroup", line.regroup)("--regroup-prices", line.regroup_prices)(
       "--regroup-ceiling-ms", line.regroup_ceiling_ms)("--regroup-dwell", line.regroup_dwell);

@@ -15,6 +15,7 @@
 #include "sequences/content/own_settings.h"
 #include "sequences/content/value_type.h"
 #include "sequences/files/terminal_text.h"
+#include "sequences/pipeline/accumulate.h"
 #include "sequences/pipeline/culling/culling.h"
 #include "sequences/pipeline/predictive/plan_buffers.h"
 
@@ -65,9 +66,11 @@ std::pair<int, int> frame_range_from(const std::string& text, int frames) {
 void apply_prediction(const CommandLine& line, regulator::RegulatorOptions& options) {
   if (line.predict.empty()) return;
   const regulator::Prediction prediction = choice("--predict", line.predict, kPredictionWords);
-  if (prediction != regulator::Prediction::Known && options.policy != regulator::Policy::Lookahead)
+  const bool looks_ahead =
+      options.policy == regulator::Policy::Lookahead || options.policy == regulator::Policy::Predictive;
+  if (prediction != regulator::Prediction::Known && !looks_ahead)
     throw InputError("--predict is '" + line.predict + "', but --policy is '" +
-                     std::string(regulator::name(options.policy)) + "', must be lookahead");
+                     std::string(regulator::name(options.policy)) + "', must be lookahead or predictive");
   options.lookahead.predict = prediction;
 }
 
@@ -124,6 +127,9 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (!line.joining.empty()) options.predictive.joining = choice("--joining", line.joining, kJoiningWords);
   if (!line.motion_norm.empty())
     options.predictive.norm = choice("--motion-norm", line.motion_norm, kMotionNormWords);
+  if (!line.intervals.empty())
+    options.predictive.intervals = choice("--intervals", line.intervals, kIntervalsWords);
+  if (!line.adaptive.empty()) options.predictive.adaptive = choice("--adaptive", line.adaptive, kSwitchWords);
   apply_regrouping(line, options.regroup);
   apply_limits(line, options);
   apply_prediction(line, options);
@@ -220,6 +226,17 @@ void apply_sprites(const CommandLine& line, const Sequence& sequence, Settings& 
                      ", but sprites are compressed, must be 0: what is mixed cannot be kept compressed");
 }
 
+int accumulated_from(int pictures, regulator::Policy policy) {
+  if (pictures < 1 || pictures > kMostAccumulated)
+    throw InputError("--accumulate is " + std::to_string(pictures) + ", must be 1 to " +
+                     std::to_string(kMostAccumulated));
+  if (pictures > 1 && policy != regulator::Policy::Direct && policy != regulator::Policy::Predictive)
+    throw InputError("--accumulate is " + std::to_string(pictures) +
+                     ", must be 1 unless --policy is direct or predictive, but that is '" +
+                     std::string(regulator::name(policy)) + "'");
+  return pictures;
+}
+
 Settings settings_of(const CommandLine& line, const Sequence& sequence) {
   Settings settings = own_settings(sequence);
   apply_regulator(line, settings.regulator);
@@ -229,6 +246,7 @@ Settings settings_of(const CommandLine& line, const Sequence& sequence) {
   apply_order(line, sequence, settings);
   apply_sprites(line, sequence, settings);
   settings.budget_gap = line.budget_gap;
+  if (line.accumulate) settings.accumulate = accumulated_from(*line.accumulate, settings.regulator.policy);
   return settings;
 }
 

@@ -35,11 +35,11 @@ struct CommandLine {
   std::optional<double> photometric, light_angle_deg, turned_px, shadow_map_px, depth_complexity;
   std::string color_warp, stagger, late_chunks;  ///< "on", "off"
   std::string visibility;                        ///< "cto,eye,eye"
-  std::string joining, motion_norm;
+  std::string joining, motion_norm, intervals, adaptive;
   std::string regroup, regroup_prices;
   std::optional<double> regroup_ceiling_ms;
   std::optional<int> regroup_dwell;
-  std::optional<int> tree_k, samples;
+  std::optional<int> tree_k, samples, accumulate;
   std::optional<int> hold, blend, lookahead, material_points;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says
   std::optional<std::int64_t> budget_polygons, budget_pixels, budget_chunks;

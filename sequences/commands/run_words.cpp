@@ -54,7 +54,8 @@ void add_policy(CLI::App& command, CommandLine& line) {
           "a power of --tree-k",
           std::to_string(kUsual.lookahead.frames))
       .option("--predict", line.predict,
-              "policy lookahead: frames ahead are known, or linear: extrapolated from the last two",
+              "policies lookahead and predictive: frames ahead are known, or linear: extrapolated from the "
+              "last two",
               std::string(word_of(kUsual.lookahead.predict, kPredictionWords)))
       .option("--tree-k", line.tree_k,
               "policy predictive: into how many parts an interval of the plan is cut",
@@ -64,7 +65,14 @@ void add_policy(CLI::App& command, CommandLine& line) {
               std::string(word_of(kUsual.predictive.joining, kJoiningWords)))
       .option("--motion-norm", line.motion_norm,
               "policy predictive: --geometric-px in any direction (euclid), or along x and along y (axis)",
-              std::string(word_of(kUsual.predictive.norm, kMotionNormWords)));
+              std::string(word_of(kUsual.predictive.norm, kMotionNormWords)))
+      .option(
+          "--intervals", line.intervals,
+          "policy predictive: those of a slice are of equal length (fixed), or cut where most rests (data)",
+          std::string(word_of(kUsual.predictive.intervals, kIntervalsWords)))
+      .option("--adaptive", line.adaptive,
+              "policy predictive: on: shorter slices after a surprise, longer ones while there is none",
+              std::string(word_of(kUsual.predictive.adaptive, kSwitchWords)));
 }
 
 void add_regrouping(CLI::App& command, CommandLine& line) {
@@ -157,6 +165,9 @@ void add_drawing(OptionGroup group, CommandLine& line) {
                std::string(word_of(chunker::RenderOptions().shading, kShadingWords)));
   group.option("--samples", line.samples, "of coverage and depth for each pixel: 1, 4 or 16",
                std::to_string(chunker::RenderOptions().samples));
+  group.option("--accumulate", line.accumulate,
+               "policies direct and predictive: a frame is the mean of M pictures over its time, 1 to 256",
+               std::to_string(Settings().accumulate));
   group.option("--resolution", line.resolution, "sprite texels per display pixel, each axis",
                shown(layers::PlacementOptions().resolution_scale));
   group.option("--compression", line.compression,

@@ -84,6 +84,8 @@ inline const auto kPolicyWords = words_of(regulator::kAllPolicies);
 inline const auto kPredictionWords = words_of(regulator::kAllPredictions);
 inline const auto kJoiningWords = words_of(regulator::kAllJoinings);
 
+inline constexpr Words<regulator::Intervals, 2> kIntervalsWords{
+    {{"fixed", regulator::Intervals::Fixed}, {"data", regulator::Intervals::Data}}};
 inline constexpr Words<regulator::MotionNorm, 2> kMotionNormWords{
     {{"axis", regulator::MotionNorm::Axis}, {"euclid", regulator::MotionNorm::Euclid}}};
 inline const auto kRegroupWords = words_of(regulator::kAllRegroups);

@@ -48,6 +48,11 @@ Format<regulator::MotionNorm> motion_norm() {
   return choice<regulator::MotionNorm>({{"axis", Axis}, {"euclid", Euclid}});
 }
 
+Format<regulator::Intervals> intervals() {
+  using enum regulator::Intervals;
+  return choice<regulator::Intervals>({{"fixed", Fixed}, {"data", Data}});
+}
+
 Format<int> amount() { return whole(0, std::numeric_limits<int>::max()); }
 
 Table<LookaheadOptions> lookahead_keys() {
@@ -58,7 +63,7 @@ Table<LookaheadOptions> lookahead_keys() {
            "slice, "
            "a power of `tree_k`")
       .key("predict", &L::predict, prediction(), "",
-           "policy lookahead: motion ahead is known, or goes on as it is");
+           "policies lookahead and predictive: motion ahead is known, or goes on as it is");
 }
 
 Table<PredictiveOptions> predictive_keys() {
@@ -73,7 +78,13 @@ Table<PredictiveOptions> predictive_keys() {
            "that it is "
            "laid over, or goes on in it where nothing else needs that")
       .key("motion_norm", &P::norm, motion_norm(), "",
-           "policy predictive: geometric_px holds along x and along y, or in any direction");
+           "policy predictive: geometric_px holds along x and along y, or in any direction")
+      .key("intervals", &P::intervals, intervals(), "",
+           "policy predictive: those of the plan are of equal length, or cut for each slice where most rests "
+           "(of at most 128 frames)")
+      .key("adaptive", &P::adaptive, truth(), "",
+           "policy predictive: a slice is 1 / tree_k as long after a surprise, tree_k times after two "
+           "without one");
 }
 
 Format<regulator::Regroup> regroup_by() {

@@ -109,15 +109,16 @@ Factoring found_layers(Sequence& sequence, const BuiltScene& built, const std::v
   const std::size_t kept_count = kept.size();
   FactoringStudy study_of_layers = study({built.scene, std::move(kept), {}, own_settings(sequence)}, options);
   Factoring& found = study_of_layers.chosen;
-  if (options.way == FactoringWay::Amortised) {
-    if (const std::size_t made = found.specs.size() - kept_count;
-        made > static_cast<std::size_t>(options.limit()))
-      throw InputError("layers: auto is 'amortised', which begins with a layer for each of " +
-                           std::to_string(made) + " parts, must be no more than max, which is " +
-                           std::to_string(options.limit()),
-                       sequence.file);
-    sequence.regulator.regroup.by = regulator::Regroup::Amortised;
-  }
+  const std::size_t made = found.specs.size() - kept_count;
+  if (!options.joins_to_limit() && made > static_cast<std::size_t>(options.limit()))
+    throw InputError((options.way == FactoringWay::Motion
+                          ? "layers: auto is 'motion', which makes a layer for each of " +
+                                std::to_string(made) + " groups that move as one"
+                          : "layers: auto is 'amortised', which begins with a layer for each of " +
+                                std::to_string(made) + " parts") +
+                         ", must be no more than max, which is " + std::to_string(options.limit()),
+                     sequence.file);
+  if (options.way == FactoringWay::Amortised) sequence.regulator.regroup.by = regulator::Regroup::Amortised;
   for (const std::string& line : hidden_in_words(found))
     sequence.warnings.push_back(sequence.file + ": " + line);
   const std::size_t looked_at = study_of_layers.instants.size();

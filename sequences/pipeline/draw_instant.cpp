@@ -3,8 +3,11 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <optional>
 
+#include "fiducials/place_floor.h"
 #include "layers/check.h"
+#include "layers/rest.h"
 #include "regulator/policies.h"
 #include "sequences/pipeline/layer_planning.h"
 
@@ -16,33 +19,50 @@ namespace {
 class Judge {
  public:
   Judge(const Pipeline& pipeline, PipelineState& state, int layer, int frame_rendered)
-      : pipeline_(pipeline), state_(state), layer_(layer), frame_rendered_(frame_rendered) {}
+      : pipeline_(pipeline),
+        state_(state),
+        layer_(layer),
+        frame_rendered_(frame_rendered),
+        limit_px_(most_px(pipeline, state.layers[layer])) {
+    if (!predicts(pipeline) && !pipeline.culling) rest_.emplace(pipeline.scene, state.layers[layer]);
+  }
 
   bool serves(int instant, int frame) {
+    ++counts_.judged;
+    if (rest_ && rest_->rests(time_of(pipeline_, instant), time_of(pipeline_, frame))) return true;
     const layers::LayerState& now = captured_states(pipeline_, state_, frame)[layer_];
     if (!now.touches_display) return true;  // not shown
     const layers::LayerState& then = captured_states(pipeline_, state_, instant)[layer_];
     if (!then.touches_display) return false;  // nothing to draw
+    const layers::Polyhedron& hull = state_.layers.bound(layer_).hull;
+    if (limit_px_ < warp::kHugePx && fiducials::affine_floor_px(then, now, hull) > limit_px_) return false;
+    ++counts_.evaluated;
     const regulator::LayerAssessment assessment =
         assess_sprite(pipeline_, state_.layers, then, captured_placement(pipeline_, state_, layer_, instant),
                       now, frame - frame_rendered_);
     return regulator::violation_of(assessment, pipeline_.settings.regulator).empty();
   }
 
+  const LookaheadReport& counts() const { return counts_; }
+
  private:
+  /// The error of place beyond which a sprite is never shown; huge where its warps are not affine.
+  static double most_px(const Pipeline& pipeline, const layers::Layer& layer) {
+    if (warp::family_of(curve_of(pipeline, layer)) == warp::Family::Perspective) return warp::kHugePx;
+    return pipeline.settings.regulator.thresholds.geometric_px / layer.preferences.importance.geometric;
+  }
+
   const Pipeline& pipeline_;
   PipelineState& state_;
   int layer_, frame_rendered_;
+  double limit_px_;
+  std::optional<layers::LayerRest> rest_;
+  LookaheadReport counts_;
 };
 
-}  // namespace
-
-regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState& state, int layer,
-                                        int frame) {
+/// How far the instants and the run may reach.
+regulator::FrameRun longest_run_of(const Pipeline& pipeline, int frame, int last, Judge& judge) {
   const regulator::RegulatorOptions& options = pipeline.settings.regulator;
-  const int last = pipeline.settings.frames - 1;
-  TALISMAN_CHECK_LE(frame, last);  // Settings::frames is not the length of the sequence
-  Judge judge(pipeline, state, layer, frame);
   const auto serves = [&judge](int instant, int shown_at) { return judge.serves(instant, shown_at); };
   if (options.policy == regulator::Policy::Oracle)
     return regulator::longest_run(frame, regulator::Instants{0, last}, last, serves);
@@ -51,6 +71,21 @@ regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState&
   const std::int64_t horizon = frame + 2 * std::int64_t{options.lookahead.frames};
   return regulator::longest_run(frame, options.lookahead.frames,
                                 static_cast<int>(std::min<std::int64_t>(last, horizon)), serves);
+}
+
+}  // namespace
+
+regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
+                                        LookaheadReport* counts) {
+  const int last = pipeline.settings.frames - 1;
+  TALISMAN_CHECK_LE(frame, last);  // Settings::frames is not the length of the sequence
+  Judge judge(pipeline, state, layer, frame);
+  const regulator::FrameRun run = longest_run_of(pipeline, frame, last, judge);
+  if (counts != nullptr) {
+    counts->judged += judge.counts().judged;
+    counts->evaluated += judge.counts().evaluated;
+  }
+  return run;
 }
 
 }  // namespace talisman::sequences

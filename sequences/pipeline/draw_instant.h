@@ -17,7 +17,18 @@
 /// that it does not serve is drawn as of now. So the bound of the displayed error holds whatever was
 /// expected; a wrong expectation costs renders, not error.
 
+/// Most pairs of an instant and a frame need no fiducial to be judged, and none of these is judged otherwise for it:
+///
+///   serves       nothing that the layer's picture depends on moves from the one to the other (layers/rest.h): found
+///                from the tracks, without either state
+///   serves not   its characteristic points are farther from any affine map of the old ones than the threshold
+///                allows (fiducials/place_floor.h); where the layer's warps are of the perspective family nothing is said
+///
+/// So what rests costs nothing, as an interval that is dismissed in regulator/certified_words.h, and of what turns only the
+/// instants near enough are fitted. Light, sampling and edges have no such bound: they are evaluated.
+
 #include "regulator/schedule.h"
+#include "sequences/pipeline/lookahead_report.h"
 #include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
@@ -25,6 +36,8 @@ namespace talisman::sequences {
 /// The instant that serves the longest run from `frame` on, and that run. The layer is in view at `frame`.
 /// Cost: capture, placement and assessment (some µs) of each instant that may be chosen and of each frame of
 /// the runs that win; memory: the states of every frame looked at, some kB per layer.
-regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState& state, int layer, int frame);
+/// What was asked is added to `counts`.
+regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
+                                        LookaheadReport* counts = nullptr);
 
 }  // namespace talisman::sequences

@@ -15,6 +15,7 @@
 #include "regulator/plan.h"
 #include "sequences/pipeline/frame_order.h"
 #include "sequences/pipeline/layer_table.h"
+#include "sequences/pipeline/lookahead_report.h"
 #include "sequences/pipeline/predictive/predictive_report.h"
 #include "sequences/pipeline/shade_memory.h"
 #include "sequences/pipeline/sprite_compression.h"
@@ -87,6 +88,7 @@ struct FrameReport {
   int late_renders = 0;  ///< sprites drawn now that had been planned for an earlier frame
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   std::optional<PredictiveReport> predictive;      ///< of that policy
+  std::optional<LookaheadReport> lookahead;        ///< of the policies that look ahead
   StageTimes times;
   chunker::Frame picture;  ///< empty when only planned
 };

@@ -35,12 +35,6 @@ bool is_blurred(const layers::LayerPreferences& preferences) {
   return layers::is_built(layers::Effect::MotionBlur) && preferences.motion_blur > 0;
 }
 
-/// The family that carries the layer's sprite.
-warp::Curve curve_of(const Pipeline& pipeline, const Layer& layer) {
-  if (layer.preferences.warp.empty() || !pipeline.settings.layers_own_warps) return pipeline.settings.curve;
-  return warp::curve_from_name(layer.preferences.warp).value_or(pipeline.settings.curve);
-}
-
 /// Texels per display pixel that the layer's author asks for.
 double own_resolution(const Layer& layer) {
   return layers::is_built(layers::Effect::LayerResolution) ? layer.preferences.resolution_scale : 1;
@@ -113,6 +107,11 @@ bool looks_ahead(const Pipeline& pipeline) {
 bool draws_sprites(const Pipeline& pipeline) {
   const Policy policy = pipeline.settings.regulator.policy;
   return policy != Policy::Direct && policy != Policy::Predictive;
+}
+
+warp::Curve curve_of(const Pipeline& pipeline, const Layer& layer) {
+  if (layer.preferences.warp.empty() || !pipeline.settings.layers_own_warps) return pipeline.settings.curve;
+  return warp::curve_from_name(layer.preferences.warp).value_or(pipeline.settings.curve);
 }
 
 bool predicts(const Pipeline& pipeline) {

@@ -17,6 +17,9 @@ bool looks_ahead(const Pipeline& pipeline);
 /// Does the policy draw layers one by one, which then need an order?
 bool draws_sprites(const Pipeline& pipeline);
 
+/// The family of warps, and its norm, that carries the layer's sprite.
+warp::Curve curve_of(const Pipeline& pipeline, const layers::Layer& layer);
+
 /// Are the frames ahead predicted rather than known?
 bool predicts(const Pipeline& pipeline);
 

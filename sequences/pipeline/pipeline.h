@@ -61,6 +61,9 @@ struct Settings {
   bool late_chunks = false;
   /// Which tests decide what is looked at and drawn at all. More of them leave less to draw, and cost time.
   VisibilityOptions visibility;
+  /// M ≥ 1: a frame is the mean of M pictures over its time (sequences/pipeline/accumulate.h). 1: an instant. More
+  /// are smoother motion blur, and cost what changes within a frame each time.
+  int accumulate = 1;
   std::shared_ptr<const layers::CellSet> cells;  ///< of the scene; null: it has none
 };
 

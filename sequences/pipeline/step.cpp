@@ -9,6 +9,7 @@
 #include "layers/check.h"
 #include "layers/effects.h"
 #include "layers/moving_picture.h"
+#include "sequences/pipeline/accumulate.h"
 #include "sequences/pipeline/aggregates.h"
 #include "sequences/pipeline/blended_sprites.h"
 #include "sequences/pipeline/cross_fading.h"
@@ -96,8 +97,8 @@ std::optional<regulator::BudgetGap> gap_of(const FrameReport& report, const Shad
 /// Chooses the instant as of which the layer is drawn, and completes the decision by how that sprite is shown
 /// now. Returns the instant.
 int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
-                   regulator::LayerDecision& decision) {
-  const regulator::FrameRun run = choose_draw_instant(pipeline, state, decision.layer, frame);
+                   regulator::LayerDecision& decision, LookaheadReport& counts) {
+  const regulator::FrameRun run = choose_draw_instant(pipeline, state, decision.layer, frame, &counts);
   decision.reason += "; rendered as of frame " + std::to_string(run.instant) + ", serves " +
                      std::to_string(run.first) + "-" + std::to_string(run.last);
   if (predicts(pipeline)) decision.reason += " if the motion goes on";
@@ -130,12 +131,13 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
     state.uploaded.resize(pipeline.scene.moving_pictures.size(), -1);
     report.upload_bytes = 0;
   }
+  if (looks_ahead(pipeline)) report.lookahead.emplace();
   for (regulator::LayerDecision& decision : report.plan.decisions) {
     if (decision.action == Action::Drop) continue;
     LayerMemory& memory = state.memory[decision.layer];
     if (decision.action == Action::Rerender) {
       const int instant = looks_ahead(pipeline) && !decision.settled
-                              ? decide_instant(pipeline, state, report.frame, decision)
+                              ? decide_instant(pipeline, state, report.frame, decision, *report.lookahead)
                               : report.frame;
       begin_fade(pipeline, state, decision.layer, report.frame);
       // The placement first: it depends on how long the old sprite lasted.
@@ -373,7 +375,7 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
     report.times.render_ms = render_watch.ms();
   } else if (pipeline.settings.regulator.policy == regulator::Policy::Predictive) {
     result = draw_predicted({pipeline, pipeline.authored, state.shadow_maps, prepared, now}, state, report);
-    report.times.render_ms = render_watch.ms();
+    report.times.render_ms = render_watch.ms() - report.times.composite_ms;
   } else {
     if (compression_of(pipeline)) report.compression.emplace();
     draw_missing_sprites(pipeline, state, now, prepared, report);
@@ -404,6 +406,10 @@ void explain_culling(const Pipeline& pipeline, PipelineState& state, FrameReport
 
 FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
                  const chunker::PreparedScene* prepared) {
+  if (pipeline.settings.accumulate > 1)
+    return accumulated_step(pipeline, frame, [&](const Pipeline& pictures, int picture) {
+      return step(pictures, state, picture, prepared);
+    });
   FrameReport report;
   report.frame = frame;
   report.display_px = pipeline.settings.view.display_px;
@@ -450,6 +456,10 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
 }
 
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
+  if (pipeline.settings.accumulate > 1)
+    return accumulated_picture(pipeline, frame, [&](const Pipeline& pictures, int picture) {
+      return draw_direct(pictures, picture, prepared);
+    });
   ShadowMapStore maps;
   const SceneFrame now = scene_at(pipeline, frame);
   return draw_directly({pipeline, pipeline.authored, maps, prepared, now}, frame).composite.frame;

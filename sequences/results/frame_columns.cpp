@@ -199,26 +199,49 @@ FrameColumns written_pictures() {
 }
 
 FrameColumns frame_predictive() {
-  return {stored<FrameLine>(
-              "predictive_slice", "predictive/slice", "frame", "first frame of the slice",
-              [](auto& l) -> auto& { return l.predictive->slice_first; }),
-          stored<FrameLine>(
-              "predictive_parts", "predictive/parts", "parts", "that the scene shows",
-              [](auto& l) -> auto& { return l.predictive->parts; }),
-          stored<FrameLine>(
-              "predictive_parts_drawn", "predictive/parts_drawn", "parts", "of these, drawn for this frame",
-              [](auto& l) -> auto& { return l.predictive->parts_drawn; }),
-          stored<FrameLine>(
-              "predictive_joins", "predictive/joins", "", "of two buffers that the plan has for this frame",
-              [](auto& l) -> auto& { return l.predictive->joins_planned; }),
-          stored<FrameLine>(
-              "predictive_joins_empty", "predictive/joins_empty", "",
-              "of these, with a buffer into which nothing is drawn",
-              [](auto& l) -> auto& { return l.predictive->joins_without_content; }),
-          stored<FrameLine>(
-              "prediction_vertices", "predictive/vertices", "",
-              "of prediction primitives, projected for the slice: in its first frame",
-              [](auto& l) -> auto& { return l.predictive->prediction_vertices; })};
+  return {
+      stored<FrameLine>(
+          "predictive_slice", "predictive/slice", "frame", "first frame of the slice",
+          [](auto& l) -> auto& { return l.predictive->slice_first; }),
+      stored<FrameLine>(
+          "predictive_slice_frames", "predictive/slice_frames", "frames", "for which it is planned",
+          [](auto& l) -> auto& { return l.predictive->slice_frames; }),
+      stored<FrameLine>(
+          "predictive_surprises", "predictive/surprises", "",
+          "1: something was not where it was expected; the plan was dropped, and all is drawn",
+          [](auto& l) -> auto& { return l.predictive->surprises; }),
+      stored<FrameLine>(
+          "predictive_surprised", "predictive/surprised", "parts", "that were not where they were expected",
+          [](auto& l) -> auto& { return l.predictive->surprised; }),
+      stored<FrameLine>(
+          "predictive_parts", "predictive/parts", "parts", "that the scene shows",
+          [](auto& l) -> auto& { return l.predictive->parts; }),
+      stored<FrameLine>(
+          "predictive_parts_drawn", "predictive/parts_drawn", "parts", "of these, drawn for this frame",
+          [](auto& l) -> auto& { return l.predictive->parts_drawn; }),
+      stored<FrameLine>(
+          "predictive_joins", "predictive/joins", "", "of two buffers that the plan has for this frame",
+          [](auto& l) -> auto& { return l.predictive->joins_planned; }),
+      stored<FrameLine>(
+          "predictive_joins_empty", "predictive/joins_empty", "",
+          "of these, with a buffer into which nothing is drawn",
+          [](auto& l) -> auto& { return l.predictive->joins_without_content; }),
+      stored<FrameLine>(
+          "prediction_vertices", "predictive/vertices", "",
+          "of prediction primitives, projected for the slice: in its first frame",
+          [](auto& l) -> auto& { return l.predictive->prediction_vertices; })};
+}
+
+FrameColumns frame_lookahead() {
+  return {
+      stored<FrameLine>(
+          "lookahead_judged", "lookahead/judged", "",
+          "pairs of an instant ahead and a frame that were judged: would the one's sprite serve the other?",
+          [](auto& l) -> auto& { return l.lookahead->judged; }),
+      stored<FrameLine>(
+          "lookahead_evaluated", "lookahead/evaluated", "",
+          "of these, by fit and fiducials: neither rest nor a bound of the error of place was certain",
+          [](auto& l) -> auto& { return l.lookahead->evaluated; })};
 }
 
 FrameColumns light_layers() {
@@ -292,6 +315,9 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
       {"moving_pictures", "where the scene has image sequences or videos", false,
        [](const FrameLine& l) { return l.upload_bytes.has_value(); },
        [](FrameLine& l) { l.upload_bytes = 0; }},
+      {"lookahead", "with --policy lookahead or oracle", false,
+       [](const FrameLine& l) { return l.lookahead.has_value(); },
+       [](FrameLine& l) { l.lookahead.emplace(); }},
       {"predictive", "with --policy predictive", false,
        [](const FrameLine& l) { return l.predictive.has_value(); },
        [](FrameLine& l) { l.predictive.emplace(); }},
@@ -310,7 +336,7 @@ const ColumnTable<FrameLine>& frame_table() {
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
           written_pictures(), light_layers(), moving_pictures(), seams(), frame_expressions(),
-          frame_budget_gap(), frame_predictive(),
+          frame_budget_gap(), frame_lookahead(), frame_predictive(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

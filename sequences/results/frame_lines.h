@@ -93,6 +93,7 @@ struct FrameLine {
   std::optional<std::int64_t> open_seam_pixels;    ///< with quality, where layers share edges
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   std::optional<PredictiveReport> predictive;      ///< of that policy, without what drawing adds
+  std::optional<LookaheadReport> lookahead;        ///< of the policies that look ahead
   FrameTimes times;                                ///< not in frames.jsonl
 
   bool is_drawn() const { return !frame_hash.empty(); }

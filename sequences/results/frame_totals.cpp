@@ -74,6 +74,12 @@ void FrameTotals::add(const FrameLine& line) {
   if (line.visibility) add_sort(*line.visibility, visibility_, resolved_);
   if (line.budget_gap) add_gap(*line.budget_gap, gap_);
   if (line.upload_bytes) upload_bytes_ = upload_bytes_.value_or(0) + *line.upload_bytes;
+  if (line.predictive) surprises_ = surprises_.value_or(0) + line.predictive->surprises;
+  if (line.lookahead) {
+    if (!lookahead_) lookahead_.emplace();
+    lookahead_->judged += line.lookahead->judged;
+    lookahead_->evaluated += line.lookahead->evaluated;
+  }
   if (line.compression) {
     if (!compression_) compression_.emplace();
     *compression_ += *line.compression;

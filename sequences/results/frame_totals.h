@@ -47,6 +47,8 @@ class FrameTotals {
   GapSummary gap() const;
   const std::optional<CompressionReport>& compression() const { return compression_; }
   const std::optional<std::int64_t>& upload_bytes() const { return upload_bytes_; }
+  const std::optional<LookaheadReport>& lookahead() const { return lookahead_; }
+  const std::optional<std::int64_t>& surprises() const { return surprises_; }  ///< of policy predictive
   double slowest_sort_ms() const { return slowest_sort_ms_; }
   /// Empty where no frame was compared.
   std::optional<MeanQuality> quality(Quality FrameQuality::*which) const;
@@ -68,6 +70,8 @@ class FrameTotals {
   std::optional<CompressionReport> compression_;
   std::optional<std::int64_t> upload_bytes_;
   std::optional<OpenSeams> open_seams_;
+  std::optional<LookaheadReport> lookahead_;
+  std::optional<std::int64_t> surprises_;
   double slowest_sort_ms_ = 0;
   MeanQuality of_total_, of_reuse_, of_resampling_;  ///< the sums
 };

@@ -152,6 +152,20 @@ RunColumns compression() {
   return columns;
 }
 
+RunColumns run_motion_ahead() {
+  return {
+      computed<RunRow>("lookahead_judged", "lookahead/judged", "",
+                       "pairs of an instant ahead and a frame, of which it was asked whether the one's "
+                       "sprite would serve the other",
+                       [](const RunRow& r) { return r.sums.lookahead().value_or(LookaheadReport{}).judged; }),
+      computed<RunRow>(
+          "lookahead_evaluated", "lookahead/evaluated", "", "of these, by fit and fiducials",
+          [](const RunRow& r) { return r.sums.lookahead().value_or(LookaheadReport{}).evaluated; }),
+      computed<RunRow>("predictive_surprises", "predictive/surprises", "",
+                       "in which a plan was dropped, and the frame drawn whole",
+                       [](const RunRow& r) { return r.sums.surprises().value_or(0); })};
+}
+
 RunColumns run_budget_gap() {
   return {computed<RunRow>("budget_gap_mean", "budget_gap/mean", "",
                            "share of the best choice's benefit that was missed, mean over exact_frames",
@@ -183,6 +197,10 @@ std::vector<ColumnGroup<RunRow>> run_groups() {
       {"visibility", "where layers were sorted in any frame; null: the groups alone gave the order", true,
        [](const RunRow& r) { return r.visibility.frames > 0; }},
       {"compression", "with --compression", false, [](const RunRow& r) { return r.compression.has_value(); }},
+      {"lookahead", "with --policy lookahead or oracle", false,
+       [](const RunRow& r) { return r.sums.lookahead().has_value(); }},
+      {"predictive", "with --policy predictive", false,
+       [](const RunRow& r) { return r.sums.surprises().has_value(); }},
       {"budget_gap", "with --budget-gap", false, [](const RunRow& r) { return r.gap.frames > 0; }},
       {"quality", "with --quality", false, [](const RunRow& r) { return r.quality.has_value(); }},
       {"quality_of_reuse", "with --quality", false,
@@ -206,7 +224,8 @@ const ColumnTable<RunRow>& run_table() {
   static const ColumnTable<RunRow> table = [] {
     ColumnTable<RunRow> t{"run", "talisman.summary/1", {}, run_groups()};
     for (const RunColumns& part :
-         {what_was_run(), run_work(), run_visibility(), modelled(), compression(), run_budget_gap(),
+         {what_was_run(), run_work(), run_visibility(), modelled(), compression(), run_motion_ahead(),
+          run_budget_gap(),
           run_quality(
               "quality", "displayed against `direct`", [](auto& r) -> auto& { return r.quality; }),
           run_quality(

@@ -57,10 +57,12 @@ void regulator(Options& options, const Visit& visit) {
   visit("lookahead_frames", lookahead_frames);
   visit("predict", predict);
   budget(of_budget, visit);
-  auto& [children, joining, norm] = predictive;
+  auto& [children, joining, norm, intervals, adaptive] = predictive;
   visit("tree_k", children);
   visit("joining", joining);
   visit("motion_norm", norm);
+  visit("intervals", intervals);
+  visit("adaptive", adaptive);
   auto& [by, prices, ceiling, dwell, recency] = of_regroup;
   visit("regroup", by);
   visit("regroup_prices", prices);
@@ -114,7 +116,7 @@ template <typename AnySettings, typename Visit>
 void for_each_setting(AnySettings& settings, const Visit& visit) {
   auto& [regulator, curve, own_warps, fit, view, bound, material_points, extents, placement, render,
          compression, explicit_order, cycles, compositor, fps, frames, budget_gap, late_chunks, visibility,
-         cells] = settings;
+         accumulate, cells] = settings;
   static_cast<void>(cells);  // content: its files are part of the identity
   auto& [display, clip_margin] = view;
   visit("display_px", display);
@@ -136,6 +138,7 @@ void for_each_setting(AnySettings& settings, const Visit& visit) {
   visit("budget_gap", budget_gap);
   visit("late_chunks", late_chunks);
   visit("visibility", visibility);
+  visit("accumulate", accumulate);
 }
 
 }  // namespace talisman::sequences

@@ -22,6 +22,7 @@ Json setting_value(const layers::ivec2& v) { return {v.x, v.y}; }
 Json setting_value(const layers::dvec2& v) { return {v.x, v.y}; }
 Json setting_value(regulator::Policy policy) { return regulator::name(policy); }
 Json setting_value(regulator::Joining joining) { return regulator::name(joining); }
+Json setting_value(regulator::Intervals intervals) { return regulator::name(intervals); }
 Json setting_value(regulator::MotionNorm norm) { return regulator::name(norm); }
 Json setting_value(regulator::Regroup by) { return regulator::name(by); }
 Json setting_value(regulator::RegroupPrices prices) { return regulator::name(prices); }

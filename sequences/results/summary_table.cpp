@@ -140,6 +140,9 @@ std::string special_rows(const RunRow& run) {
         "  choice            misses %.2f %% of the best choice's benefit in the mean, %.1f %% at most\n"
         "                    (the best proved in %d of %d frames)\n",
         100 * gap.mean, 100 * gap.max, gap.exact_frames, gap.frames);
+  if (const std::int64_t surprises = run.sums.surprises().value_or(0); surprises > 0)
+    text += formatted("  surprises         %lld: the plan was dropped, and the frame drawn whole\n",
+                      static_cast<long long>(surprises));
   if (const ResolvedCounters& r = run.resolved; r.components > 0)
     text += formatted(
         "  expressions       %d, for %d sprites that would have been merged; %d reads, %d operators, "

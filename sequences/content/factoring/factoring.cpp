@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "sequences/content/factoring/backdrops.h"
+#include "sequences/content/factoring/motion_groups.h"
 #include "sequences/files/number_text.h"
 
 namespace talisman::sequences {
@@ -93,7 +94,9 @@ class Study {
   }
 
   FactoringStudy run() {
-    if (options_.way == FactoringWay::Amortised) return one_for_each_part();
+    if (options_.way == FactoringWay::Amortised) return as_they_are("amortised", alone());
+    if (options_.way == FactoringWay::Motion)
+      return as_they_are("motion", groups_that_move_as_one(scene_.scene, pieces_, scene_.settings));
     const bool by_node = options_.way == FactoringWay::Node;
     if (pieces_.free > 1 && pieces_.free <= kMostFactoredPieces && (!by_node || too_many_nodes())) look();
     if (data_) behind_ = pieces_behind(scene_.scene, pieces_, data_->depths);
@@ -116,18 +119,18 @@ class Study {
     DepthSamples depths;
   };
 
-  /// What pays is found while it runs; all that is looked at is the order where the bounds know none.
-  FactoringStudy one_for_each_part() {
+  /// Nothing is compared: all that is looked at is the order where the bounds know none.
+  FactoringStudy as_they_are(const std::string& how, const Groups& groups) {
     FactoringStudy result;
     if (pieces_.free > 1 && pieces_.free <= kMostFactoredPieces) {
       look();
-      result.chosen = in_order({alone(), false, false}).factoring;
+      result.chosen = in_order({groups, false, false}).factoring;
       result.instants = instants_;
     } else {
-      result.chosen = factoring_of("amortised", alone());
+      result.chosen = factoring_of(how, groups);
       result.chosen.set = layers::factor(scene_.scene, result.chosen.specs);
     }
-    result.chosen.how = "amortised";
+    result.chosen.how = how;
     result.pieces = std::move(pieces_);
     return result;
   }

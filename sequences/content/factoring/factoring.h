@@ -8,6 +8,8 @@
 ///   velocity   parts that move alike on the display and lie together are one layer (grouping.h), in the order in which
 ///              they were seen (seen_order.h). What comes out is planned, as are one layer per node and one for all, and
 ///              the cheapest is taken: no proposal costs more than either.
+///   motion     parts whose relative transforms stay constant over the sequence are one layer, wherever they lie and whatever
+///              the tree of nodes says (motion_groups.h): what a plan of shared buffers would draw together [F96 3.1.1]
 ///   amortised  a layer for each part, that share sprites while it runs (sequences/pipeline/regrouping/regroup.h)
 ///
 /// Another way is a value of FactoringWay, its word in factoring_keys.cpp, and a function from Pieces to groups in
@@ -22,17 +24,17 @@
 
 namespace talisman::sequences {
 
-enum class FactoringWay { Node, Velocity, Amortised };
+enum class FactoringWay { Node, Velocity, Motion, Amortised };
 
 inline constexpr int kMostLayersByDefault = 40;
 inline constexpr int kMostLayers = 1000;
 
 struct AutoLayers {
   FactoringWay way = FactoringWay::Velocity;
-  std::optional<int> max{};  ///< 1 … kMostLayers; empty: kMostLayersByDefault, Amortised: kMostLayers
-  int limit() const {
-    return max.value_or(way == FactoringWay::Amortised ? kMostLayers : kMostLayersByDefault);
-  }
+  std::optional<int> max{};  ///< 1 … kMostLayers; empty: kMostLayersByDefault; Motion, Amortised: kMostLayers
+  int limit() const { return max.value_or(joins_to_limit() ? kMostLayersByDefault : kMostLayers); }
+  /// Are layers joined until there are no more? Else it is for what moves alone to say how many there are.
+  bool joins_to_limit() const { return way == FactoringWay::Node || way == FactoringWay::Velocity; }
   bool operator==(const AutoLayers&) const = default;
 };
 
@@ -48,7 +50,7 @@ struct Unfactored {
 };
 
 struct Factoring {
-  std::string how;                       ///< "velocity", "node", "one", "amortised": of which the layers are
+  std::string how;  ///< "velocity", "node", "one", "motion", "amortised": of which the layers are
   std::vector<layers::LayerSpec> specs;  ///< those that were kept first
   layers::LayerSet set;                  ///< what layers::factor makes of them
   std::vector<std::vector<int>> pieces;  ///< by spec: what each has

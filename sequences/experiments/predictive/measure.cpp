@@ -31,7 +31,9 @@ PredictiveSetting plan_setting(const regulator::RegulatorOptions& base, const st
   setting.options.policy = Policy::Predictive;
   setting.options.thresholds.geometric_px = delta_px;
   setting.options.lookahead.frames = shape.frames;
-  setting.options.predictive = {shape.children, joining, regulator::MotionNorm::Euclid};
+  setting.options.predictive = {};
+  setting.options.predictive.children = shape.children;
+  setting.options.predictive.joining = joining;
   setting.name = formatted("predictive %g px, N %d, k %d, ", delta_px, shape.frames, shape.children) +
                  std::string(regulator::name(joining));
   return setting;
@@ -178,6 +180,13 @@ std::vector<PredictiveSetting> predictive_settings(const regulator::RegulatorOpt
   for (const Joining joining : regulator::kAllJoinings)
     settings.push_back(
         plan_setting(base, "joining", static_cast<double>(joining), kUsual_px, usual, joining));
+  for (const regulator::Intervals intervals : regulator::kAllIntervals) {
+    PredictiveSetting setting =
+        plan_setting(base, "intervals", static_cast<double>(intervals), kUsual_px, usual);
+    setting.options.predictive.intervals = intervals;
+    setting.name += ", intervals " + std::string(regulator::name(intervals));
+    settings.push_back(std::move(setting));
+  }
   for (const Policy policy : {Policy::Threshold, Policy::Lookahead, Policy::Oracle})
     for (const double delta : kDeltas_px) settings.push_back(sprite_setting(base, policy, delta));
   return settings;

@@ -6,7 +6,7 @@
 ///
 /// One knob at a time, about δ = 1 px, N = 16, k = 2, joined in place:
 ///
-///   δ 0.01, 0.1, 0.5, 1, 2, 4 px     N 2, 4, 8, 16, 32, 64     k 2, 4, N     each way of joining
+///   δ 0.01, 0.1, 0.5, 1, 2, 4 px     N 2, 4, 8, 16, 32, 64     k 2, 4, N     each way of joining     intervals fixed, data
 ///
 /// Plans are made of every frame, pictures of those that sampled_frames.h chooses and of their predecessors; a
 /// picture that was due in a frame between is drawn with the predecessor, which is not timed.
@@ -25,7 +25,7 @@
 namespace talisman::sequences {
 
 struct PredictiveSetting {
-  std::string series;  ///< which knob: "delta", "N", "k", "joining", "threshold", "direct"
+  std::string series;  ///< which knob: "delta", "N", "k", "joining", "intervals", "threshold", "direct"
   std::string name;    ///< "predictive 1 px, N 16, k 2, in-place"
   double value = 0;    ///< of the knob
   regulator::RegulatorOptions options;

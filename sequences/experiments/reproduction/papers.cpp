@@ -6,8 +6,10 @@
 
 #include "sequences/experiments/reproduction/barnyard_pictures.h"
 #include "sequences/experiments/reproduction/durbin/amortised_95.h"
+#include "sequences/experiments/reproduction/fearing/fixed_cost_96.h"
 #include "sequences/experiments/reproduction/fearing/operations.h"
 #include "sequences/experiments/reproduction/fearing/skipped.h"
+#include "sequences/experiments/reproduction/fearing/speed_ups_96.h"
 #include "sequences/experiments/reproduction/figure_21.h"
 #include "sequences/experiments/reproduction/figure_22.h"
 #include "sequences/experiments/reproduction/figure_23.h"
@@ -32,7 +34,8 @@ Paper lengyel_snyder_1997() {
 Paper fearing_1996() {
   return {"F96",
           "Fearing, Predictive Rendering, MSc thesis, University of British Columbia 1996",
-          {operation_counts_96(), skipped_polygons_96()}};
+          {operation_counts_96(), skipped_polygons_96(), speed_ups_96(), motion_thresholds_96(),
+           fixed_cost_item_96()}};
 }
 
 Paper durbin_1995() {

@@ -65,6 +65,31 @@ class Follower {
     }
   }
 
+  /// How many parts would be displayed too far off the scene as it came? It is looked at, and forgotten again.
+  int surprised(SceneFrame truth, int index, MotionSlice& slice) {
+    const Surroundings around = around_;
+    const std::vector<dmat4> casters = casters_;
+    note_surroundings(truth);
+    std::swap(before_, truth);
+    set_view();
+    const auto moved = slice.moved_px.begin() + static_cast<std::ptrdiff_t>(index) * slice.layers;
+    std::fill(moved, moved + slice.layers, 0.0);  // what was expected is not what is displayed
+    int count = 0;
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      if (is_unchanged(i)) continue;
+      moved_px_ = 0;
+      if (has_changed(i))
+        ++count;
+      else
+        moved[followed_.parts[i].layer] = std::max(moved[followed_.parts[i].layer], moved_px_);
+    }
+    std::swap(before_, truth);
+    set_view();
+    around_ = around;
+    casters_ = casters;
+    return count;
+  }
+
   std::int64_t vertices() const { return vertices_; }
 
  private:
@@ -218,14 +243,19 @@ FollowedParts followed_parts(const layers::Scene& scene, const layers::LayerSet&
 }
 
 MotionSlice follow_parts(const FollowedParts& followed, layers::ivec2 display_px, int first, int frames,
-                         int last, const FrameAt& frame_at, const MotionOptions& options) {
-  MotionSlice slice{first, frames, {}, 0, followed.layers, {}};
+                         int last, const FrameAt& frame_at, const MotionOptions& options,
+                         const FrameAt& truth_at) {
+  MotionSlice slice{first, frames, {}, 0, -1, 0, followed.layers, {}};
   slice.moved_px.assign(static_cast<std::size_t>(frames) * followed.layers, 0.0);
   slice.words.assign(followed.parts.size(), regulator::MotionWord(frames));
   Follower follower(followed, display_px, options);
   follower.begin(frame_at(first));
-  for (int index = 1; index < frames && first + index <= last; ++index)
+  for (int index = 1; index < frames && first + index <= last; ++index) {
     follower.follow(frame_at(first + index), index, slice);
+    if (!truth_at || slice.surprise >= 0) continue;
+    slice.surprised = follower.surprised(truth_at(first + index), index, slice);
+    if (slice.surprised > 0) slice.surprise = index;
+  }
   slice.vertices = follower.vertices();
   return slice;
 }

@@ -70,6 +70,8 @@ struct MotionSlice {
   int frames = 0;                            ///< its length, N
   std::vector<regulator::MotionWord> words;  ///< by index of FollowedParts::parts
   std::int64_t vertices = 0;                 ///< of primitives that were projected
+  int surprise = -1;  ///< the first frame of the slice that came otherwise than expected; -1: none did
+  int surprised = 0;  ///< parts that it showed too far off
   int layers = 0;
   std::vector<double> moved_px;  ///< by frame of the slice and layer
   /// How far the parts of a layer are off at most that are displayed in a frame of the slice: ≤ δ, but for what is
@@ -83,8 +85,10 @@ struct MotionSlice {
 using FrameAt = std::function<layers::SceneFrame(int)>;
 
 /// Follows the parts over frames first … first + frames - 1; those behind `last` are not asked for, and at rest.
-/// Cost: O(parts + points that move) a frame.
+/// With `truth_at`, the scene as it comes, what is displayed is compared with that, too, up to the first surprise: the words
+/// are those of what was expected. Cost: O(parts + points that move) a frame.
 MotionSlice follow_parts(const FollowedParts& followed, layers::ivec2 display_px, int first, int frames,
-                         int last, const FrameAt& frame_at, const MotionOptions& options);
+                         int last, const FrameAt& frame_at, const MotionOptions& options,
+                         const FrameAt& truth_at = nullptr);
 
 }  // namespace talisman::sequences

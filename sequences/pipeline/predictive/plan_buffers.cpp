@@ -7,6 +7,7 @@
 #include "layers/check.h"
 #include "layers/effects.h"
 #include "sequences/pipeline/layer_planning.h"
+#include "sequences/pipeline/stopwatch.h"
 
 namespace talisman::sequences {
 
@@ -16,9 +17,6 @@ using chunker::JoinCounters;
 using chunker::PlanBuffer;
 using chunker::RenderCounters;
 using regulator::Joining;
-using regulator::PlanShape;
-
-PlanShape shape_of(const regulator::RegulatorOptions& options) { return regulator::plan_shape(options); }
 
 }  // namespace
 
@@ -28,36 +26,30 @@ PredictiveMemory::PredictiveMemory(const Pipeline& pipeline)
     : authored_(pipeline.authored),
       options_(pipeline.settings.regulator),
       display_px_(pipeline.settings.view.display_px),
+      fps_(pipeline.settings.fps),
       scene_(&pipeline.scene),
-      followed_(followed_parts(pipeline.scene, pipeline.authored.set())) {
-  TALISMAN_CHECK_EQ(first_defect(shape_of(options_)), std::string());
+      slices_(pipeline) {
+  TALISMAN_CHECK_EQ(first_defect(regulator::plan_shape(options_)), std::string());
 }
 
 bool PredictiveMemory::is_of(const Pipeline& pipeline) const {
   return scene_ == &pipeline.scene && authored_.is_copy_of(pipeline.authored) &&
-         options_ == pipeline.settings.regulator && display_px_ == pipeline.settings.view.display_px;
+         options_ == pipeline.settings.regulator && display_px_ == pipeline.settings.view.display_px &&
+         fps_ == pipeline.settings.fps;
 }
 
-const MotionSlice& PredictiveMemory::slice_of(const Pipeline& pipeline, int frame) {
-  const int length = shape_of(options_).frames, first = frame - frame % length;
-  if (slice_ && slice_->first == first) return *slice_;
-  const int frames = pipeline.settings.frames, last = frame < frames ? frames - 1 : first + length - 1;
-  MotionOptions options;
-  options.delta_px = options_.thresholds.geometric_px;
-  options.norm = options_.predictive.norm;
-  slice_ = follow_parts(
-      followed_, display_px_, first, length, last, [&](int at) { return scene_at(pipeline, at); }, options);
-  return *slice_;
+const PlannedSlice& PredictiveMemory::slice_of(const Pipeline& pipeline, int frame) {
+  at_hand_ = &slices_.of(pipeline, frame);
+  return *at_hand_;
 }
 
 std::vector<ShownPart> PredictiveMemory::parts_shown(int frame) const {
-  const PlanShape shape = shape_of(options_);
-  const int first = slice_->first, within = frame - first;
+  const int first = at_hand_->slice.first, within = frame - first;
   std::vector<ShownPart> shown;
-  shown.reserve(followed_.parts.size());
-  for (std::size_t i = 0; i < followed_.parts.size(); ++i) {
-    const regulator::MotionWord& word = slice_->words[i];
-    const regulator::PlannedDraw draw = regulator::draw_shown(shape, word, within);
+  shown.reserve(followed().parts.size());
+  for (std::size_t i = 0; i < followed().parts.size(); ++i) {
+    const regulator::MotionWord& word = at_hand_->motion.words[i];
+    const regulator::PlannedDraw draw = at_hand_->intervals.draw_shown(word, within);
     shown.push_back({static_cast<int>(i), draw.level, first + draw.frame,
                      first + regulator::instant_of(word, draw.frame, regulator::DrawnAs::RunStart)});
   }
@@ -65,8 +57,9 @@ std::vector<ShownPart> PredictiveMemory::parts_shown(int frame) const {
 }
 
 PlanNode PredictiveMemory::node_at(int level, int frame) const {
-  const int width = shape_of(options_).interval(level), first = frame - (frame - slice_->first) % width;
-  return {level, first, first + width};
+  const int first = at_hand_->slice.first;
+  return {level, first + at_hand_->intervals.first(level, frame - first),
+          first + at_hand_->intervals.end(level, frame - first)};
 }
 
 // --- Drawing
@@ -80,8 +73,8 @@ PlanBuffer PredictiveMemory::draw_node(const Drawing& drawing, const std::vector
   bool is_first = true;
   for (const auto& [instant, numbers] : by_instant) {
     std::vector<int> parts;
-    for (const std::uint32_t number : numbers) parts.push_back(followed_.parts[number].part);
-    const layers::SceneFrame frame = scene_at(drawing.pipeline, instant);
+    for (const std::uint32_t number : numbers) parts.push_back(followed().parts[number].part);
+    const layers::SceneFrame frame = Slices::expected(drawing.pipeline, at_hand_->slice, instant);
     chunker::DepthRenderResult drawn = draw_with_depth(
         {drawing.pipeline, drawing.layers, drawing.maps, drawing.prepared, frame}, parts, numbers);
     counters += drawn.counters;
@@ -159,28 +152,35 @@ PlanBuffer* PredictiveMemory::join_on_the_fly(const std::vector<PlanNode>& nodes
 
 PlanBuffer* PredictiveMemory::join(const Drawing& drawing, int frame, RenderCounters& render,
                                    RenderCounters& late, int& late_nodes, JoinCounters& joins) {
-  const PlanShape shape = shape_of(options_);
-  buffers_.resize(static_cast<std::size_t>(shape.levels()));
+  const Stopwatch watch;
+  double drawing_ms = 0;
+  buffers_.resize(static_cast<std::size_t>(regulator::plan_shape(options_).levels()));
   for (Held& held : buffers_)
     if (held.buffer.size_px() != display_px_) held.buffer = PlanBuffer(display_px_);
   const std::vector<ShownPart> shown = parts_shown(frame);
   std::vector<bool> has_parts(buffers_.size());
   for (const ShownPart& part : shown) has_parts[part.level] = true;
   std::vector<PlanNode> nodes;
-  for (int level = 0; level < shape.levels(); ++level)
+  for (int level = 0; level < at_hand_->intervals.levels(); ++level)
     if (has_parts[level]) nodes.push_back(node_at(level, frame));
   const auto draw = [&](const PlanNode& node) {
     const bool is_late = node.first != frame;
     late_nodes += is_late;
-    return draw_node(drawing, shown, node.level, is_late ? late : render, joins);
+    const Stopwatch draw_watch;
+    PlanBuffer drawn = draw_node(drawing, shown, node.level, is_late ? late : render, joins);
+    drawing_ms += draw_watch.ms();
+    return drawn;
   };
-  return options_.predictive.joining == Joining::EachFrame ? join_each_frame(nodes, draw, joins)
-                                                           : join_on_the_fly(nodes, draw, joins);
+  PlanBuffer* const joined = options_.predictive.joining == Joining::EachFrame
+                                 ? join_each_frame(nodes, draw, joins)
+                                 : join_on_the_fly(nodes, draw, joins);
+  joining_ms_ += watch.ms() - drawing_ms;
+  return joined;
 }
 
 void PredictiveMemory::count_joins(int frame, const std::vector<ShownPart>& shown,
                                    PredictiveReport& report) const {
-  const int levels = shape_of(options_).levels();
+  const int levels = at_hand_->intervals.levels();
   std::vector<bool> has_parts(static_cast<std::size_t>(levels));
   for (const ShownPart& part : shown) has_parts[part.level] = true;
   for (int level = 1; level < levels; ++level) {
@@ -254,7 +254,15 @@ regulator::LayerCost cost_of_share(const regulator::LayerCost& whole, const Laye
   return {share.polygons, of(whole.pixels), of(whole.chunks), of(whole.bytes)};
 }
 
-void decide_layer(const LayerShare& share, double displayed_px, regulator::LayerDecision& decision) {
+/// ", surprise: 2 parts were not where they were expected".
+std::string surprise_in_words(const Slice& slice, int frame) {
+  if (slice.surprised == 0 || frame != slice.first) return {};
+  return "; surprise, the plan is dropped: " + std::to_string(slice.surprised) +
+         (slice.surprised == 1 ? " part was" : " parts were") + " not where expected";
+}
+
+void decide_layer(const LayerShare& share, double displayed_px, const std::string& surprise,
+                  regulator::LayerDecision& decision) {
   const bool in_view = decision.action != regulator::Action::Drop;
   decision.cost = cost_of_share(decision.cost, share);
   decision.action = share.drawn > 0 ? regulator::Action::Rerender
@@ -262,7 +270,7 @@ void decide_layer(const LayerShare& share, double displayed_px, regulator::Layer
                                     : regulator::Action::Drop;
   if (decision.action == regulator::Action::Drop) return;
   decision.reason = "policy: predictive, " + std::to_string(share.drawn) + " of " +
-                    std::to_string(share.parts) + (share.parts == 1 ? " part due" : " parts due");
+                    std::to_string(share.parts) + (share.parts == 1 ? " part due" : " parts due") + surprise;
   decision.depicts_frame = share.oldest;
   decision.shown_geometric_px = displayed_px;
 }
@@ -271,13 +279,18 @@ void decide_layer(const LayerShare& share, double displayed_px, regulator::Layer
 
 void plan_predicted(const Pipeline& pipeline, PipelineState& state, FrameReport& report) {
   PredictiveMemory& memory = memory_of(pipeline, state);
-  const MotionSlice& slice = memory.slice_of(pipeline, report.frame);
+  const PlannedSlice& planned = memory.slice_of(pipeline, report.frame);
+  const Slice& slice = planned.slice;
   const std::vector<ShownPart> shown = memory.parts_shown(report.frame);
   PredictiveReport& what = report.predictive.emplace();
   what.slice_first = slice.first;
+  what.slice_frames = slice.frames;
+  if (report.frame == slice.first) what.surprised = slice.surprised;
+  what.surprises = what.surprised > 0;
   what.parts = static_cast<int>(shown.size());
-  what.prediction_vertices = slice.first == report.frame ? slice.vertices : 0;
+  what.prediction_vertices = slice.first == report.frame ? planned.motion.vertices : 0;
   memory.count_joins(report.frame, shown, what);
+  const std::string surprise = surprise_in_words(slice, report.frame);
   const std::vector<LayerShare> shares = shares_of(pipeline, memory.followed(), shown, report.frame);
   for (regulator::LayerDecision& decision : report.plan.decisions) {
     const layers::Layer& layer = report.layers[decision.layer];
@@ -289,7 +302,8 @@ void plan_predicted(const Pipeline& pipeline, PipelineState& state, FrameReport&
     }
     const LayerShare& share = shares[decision.layer];
     what.parts_drawn += share.drawn;
-    decide_layer(share, slice.displayed_px(report.frame - slice.first, decision.layer), decision);
+    decide_layer(share, planned.motion.displayed_px(report.frame - slice.first, decision.layer), surprise,
+                 decision);
   }
 }
 
@@ -297,15 +311,20 @@ chunker::CompositeResult draw_predicted(const Drawing& drawing, PipelineState& s
   PredictiveMemory& memory = memory_of(drawing.pipeline, state);
   memory.slice_of(drawing.pipeline, report.frame);
   chunker::RenderCounters late;
+  const double joined_before_ms = memory.joining_ms();
   const chunker::PlanBuffer* joined =
       memory.join(drawing, report.frame, report.render, late, report.late_renders, report.predictive->joined);
   report.predictive->buffer_bytes = memory.bytes();
+  const Stopwatch watch;
   const layers::ivec2 display_px = drawing.pipeline.settings.view.display_px;
   chunker::Sprite sprite(display_px);
   if (joined != nullptr) sprite = joined->sprite();
   chunker::PlacedSprite placed;
   placed.sprite = &sprite;
-  return chunker::composite({&placed, 1}, display_px, drawing.pipeline.scene.background);
+  chunker::CompositeResult result =
+      chunker::composite({&placed, 1}, display_px, drawing.pipeline.scene.background);
+  report.times.composite_ms = memory.joining_ms() - joined_before_ms + watch.ms();
+  return result;
 }
 
 std::string unpredictable(const layers::Scene& scene, const layers::LayerSet& set) {

@@ -3,8 +3,8 @@
 
 /// Policy Predictive: a frame out of a few full-screen buffers with depth [F96 3.1].
 ///
-/// Frames come in slices of N. At the beginning of a slice the motion of each part over it is known (part_motion.h), and
-/// from that follows what is drawn into which buffer in which frame (regulator/plan_tree.h). A part is drawn as of the
+/// Frames come in slices (slices.h). At the beginning of a slice the motion of each part over it is known or expected
+/// (part_motion.h), and from that follows what is drawn into which buffer in which frame (regulator/plan_intervals.h). A part is drawn as of the
 /// first frame of its run, so that nothing is displayed more than δ off. With δ = 0 and one sample for each texel a frame
 /// is the picture of policy Direct, byte for byte.
 ///
@@ -20,7 +20,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,7 +27,7 @@
 #include "chunker/plan_buffer.h"
 #include "sequences/pipeline/frame_report.h"
 #include "sequences/pipeline/pipeline.h"
-#include "sequences/pipeline/predictive/part_motion.h"
+#include "sequences/pipeline/predictive/slices.h"
 #include "sequences/pipeline/shade_passes.h"
 
 namespace talisman::sequences {
@@ -55,20 +54,25 @@ struct PlanNode {
 class PredictiveMemory {
  public:
   explicit PredictiveMemory(const Pipeline& pipeline);
+  PredictiveMemory(const PredictiveMemory&) = delete;
+  PredictiveMemory& operator=(const PredictiveMemory&) = delete;
 
   /// Is it of this pipeline?
   bool is_of(const Pipeline& pipeline) const;
-  const FollowedParts& followed() const { return followed_; }
+  const FollowedParts& followed() const { return slices_.followed(); }
 
-  /// The words of the slice that holds `frame`; followed anew if the one at hand is another.
-  const MotionSlice& slice_of(const Pipeline& pipeline, int frame);
+  /// The slice that holds `frame`, which is then the one at hand; planned anew if that is another.
+  const PlannedSlice& slice_of(const Pipeline& pipeline, int frame);
 
-  /// What is seen in `frame`, in the order of one pass.
+  /// What is seen in `frame` of the slice at hand, in the order of one pass.
   std::vector<ShownPart> parts_shown(int frame) const;
 
   /// Brings the buffers up to `frame` and joins them. Pictures that were due in an earlier frame are counted in `late`.
   chunker::PlanBuffer* join(const Drawing& drawing, int frame, chunker::RenderCounters& render,
                             chunker::RenderCounters& late, int& late_nodes, chunker::JoinCounters& joins);
+
+  /// Milliseconds that `join` has spent with buffers that were drawn, all calls together.
+  double joining_ms() const { return joining_ms_; }
 
   /// Joins of `frame` as the plan has them, pictures or not.
   void count_joins(int frame, const std::vector<ShownPart>& shown, PredictiveReport& report) const;
@@ -94,9 +98,11 @@ class PredictiveMemory {
   LayerTable authored_;
   regulator::RegulatorOptions options_;
   layers::ivec2 display_px_;
+  double fps_;
   const layers::Scene* scene_;
-  FollowedParts followed_;
-  std::optional<MotionSlice> slice_;
+  Slices slices_;
+  const PlannedSlice* at_hand_ = nullptr;  ///< of slices_
+  double joining_ms_ = 0;
   std::vector<Held> buffers_;    ///< by level
   chunker::PlanBuffer picture_;  ///< EachFrame: where they are joined
 };

@@ -11,6 +11,9 @@ namespace talisman::sequences {
 
 struct PredictiveReport {
   int slice_first = 0;                   ///< first frame of the slice
+  int slice_frames = 0;                  ///< for which it is planned, N
+  int surprises = 0;                     ///< 1: the plan before was dropped in this frame, and all is drawn
+  int surprised = 0;                     ///< parts that were not where they were expected
   int parts = 0, parts_drawn = 0;        ///< shown, and drawn for this frame
   int joins_planned = 0;                 ///< of two whole buffers, as regulator::joins_of_slice counts them
   int joins_without_content = 0;         ///< of these: with a node that has no part

@@ -22,6 +22,13 @@
 
 namespace talisman {
 
+/// The tool is built with a sanitizer, as the tests are: its memory is not the tool's, and limits of address space are off.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kIsSanitized = true;
+#else
+inline constexpr bool kIsSanitized = false;
+#endif
+
 struct Outcome {
   int exit_code = -1;
   std::string output;  ///< stdout and stderr

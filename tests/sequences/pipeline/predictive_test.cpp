@@ -2,92 +2,26 @@
 // Frames out of shared buffers with depth, against one pass over all parts.
 #include "sequences/pipeline/predictive/plan_buffers.h"
 
+#include <atomic>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <random>
+#include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 #include <tbb/task_arena.h>
+#include <tbb/task_group.h>
+#include <tbb/task_scheduler_observer.h>
 
-#include "sequences/content/swarm/swarm.h"
-#include "sequences/pipeline/step.h"
-#include "tests/support/scenes.h"
+#include "tests/sequences/pipeline/shown_plan.h"
 
 namespace talisman::sequences {
 namespace {
 
-using regulator::Joining;
-using regulator::PlanShape;
-
-constexpr int kFrames = 13;  // no multiple of any slice
-constexpr double kFps = 30;
-
-/// A swarm of which a part moves, before the camera of a small scene.
-layers::Scene swarm_scene(SwarmContent::Shape shape, double moving, int count = 40) {
-  layers::Scene scene = tests::cube_scene();
-  scene.parts.clear();
-  SwarmContent swarm;
-  swarm.shape = shape;
-  swarm.count = count;
-  swarm.cube_m = 6;
-  swarm.moving_percent = moving;
-  swarm.seed = 5;
-  add_swarm(scene, swarm, kFps, kFrames / kFps);
-  return scene;
-}
-
-/// Squares in one plane that faces the eye, of which every second moves in it: where they overlap depths are equal.
-layers::Scene coplanar_scene() {
-  layers::Scene scene = swarm_scene(SwarmContent::Shape::Quad, 50);
-  for (layers::Node& node : scene.nodes) {
-    node.local.translation.z = 0;
-    node.local.rotation = glm::dquat(1, 0, 0, 0);
-  }
-  std::erase_if(scene.tracks, [](const layers::Track& track) {
-    return std::holds_alternative<layers::SpinTrack>(track.motion);
-  });
-  for (layers::Track& track : scene.tracks)
-    for (layers::dvec3& at : std::get<layers::TransformTrack>(track.motion).translation.values) at.z = 0;
-  layers::Camera& camera = scene.cameras[static_cast<std::size_t>(scene.active_camera)];
-  scene.nodes.push_back({"camera", -1, {{0, 0, 9}, {1, 0, 0, 0}, {1, 1, 1}}});
-  camera.node = static_cast<int>(scene.nodes.size()) - 1;
-  return scene;
-}
-
-struct ShownPlan {
-  explicit ShownPlan(layers::Scene in) : scene(std::move(in)) {
-    layers::LayerSpec spec;
-    spec.name = "all";
-    spec.part_globs = {"*"};
-    layers = layers::factor(scene, {&spec, 1});
-    settings.view.display_px = {70, 52};
-    settings.render.samples = 1;
-    settings.regulator.policy = regulator::Policy::Predictive;
-    settings.regulator.thresholds.geometric_px = 0;
-    settings.fps = kFps;
-    settings.frames = kFrames;
-  }
-  Pipeline pipeline(const PlanShape& shape, Joining joining) const {
-    Settings own = settings;
-    own.regulator.lookahead.frames = shape.frames;
-    own.regulator.predictive = {shape.children, joining, regulator::MotionNorm::Euclid};
-    return make_pipeline(scene, layers, own);
-  }
-  std::vector<chunker::Frame> direct() const {
-    Settings own = settings;
-    own.regulator.policy = regulator::Policy::Direct;
-    const Pipeline truth = make_pipeline(scene, layers, own);
-    const chunker::PreparedScene prepared(scene, own.render);
-    std::vector<chunker::Frame> frames;
-    for (int f = 0; f < kFrames; ++f) frames.push_back(draw_direct(truth, f, prepared));
-    return frames;
-  }
-  layers::Scene scene;
-  layers::LayerSet layers;
-  Settings settings;
-};
-
-bool same(const chunker::Frame& a, const chunker::Frame& b) { return a.pixels == b.pixels; }
+using namespace shown_plan;
 
 const std::vector<PlanShape> kShapes = {{1, 2}, {2, 2}, {8, 2}, {16, 4}, {9, 3}, {5, 5}, {32, 2}};
 
@@ -98,8 +32,8 @@ void expect_equal_to_direct(const ShownPlan& show, const std::string& what) {
     for (const Joining joining : regulator::kAllJoinings) {
       const Pipeline pipeline = show.pipeline(shape, joining);
       PipelineState state(pipeline);
-      for (int f = 0; f < kFrames; ++f)
-        ASSERT_TRUE(same(step(pipeline, state, f, &prepared).picture, truth[f]))
+      for (int f = 0; f < kPlanFrames; ++f)
+        ASSERT_TRUE(same_picture(step(pipeline, state, f, &prepared).picture, truth[f]))
             << what << ": frame " << f << ", N " << shape.frames << ", k " << shape.children << ", "
             << regulator::name(joining);
     }
@@ -130,35 +64,77 @@ TEST(Predictive, FramesMayComeInAnyOrder) {
     const Pipeline pipeline = show.pipeline({8, 2}, joining);
     PipelineState state(pipeline);
     for (const int f : order)
-      ASSERT_TRUE(same(step(pipeline, state, f, &prepared).picture, truth[f]))
+      ASSERT_TRUE(same_picture(step(pipeline, state, f, &prepared).picture, truth[f]))
           << f << " " << regulator::name(joining);
     // Planned, and not drawn: what a later frame needs is drawn then.
     PipelineState skipping(pipeline);
-    for (int f = 0; f < kFrames; ++f) {
+    for (int f = 0; f < kPlanFrames; ++f) {
       const FrameReport report = step(pipeline, skipping, f, f % 3 == 2 ? &prepared : nullptr);
       if (f % 3 == 2) {
-        ASSERT_TRUE(same(report.picture, truth[f])) << f << " " << regulator::name(joining);
+        ASSERT_TRUE(same_picture(report.picture, truth[f])) << f << " " << regulator::name(joining);
       }
     }
   }
 }
 
-TEST(Predictive, ThreadsChangeNothing) {
+/// Threads that have worked in an arena.
+class Workers : public tbb::task_scheduler_observer {
+ public:
+  explicit Workers(tbb::task_arena& arena) : tbb::task_scheduler_observer(arena) { observe(true); }
+  ~Workers() override { observe(false); }
+  void on_scheduler_entry(bool) override {
+    const std::lock_guard lock(mutex_);
+    threads_.insert(std::this_thread::get_id());
+  }
+  std::size_t count() {
+    const std::lock_guard lock(mutex_);
+    return threads_.size();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<std::thread::id> threads_;
+};
+
+/// As many jobs at the same time as there are threads: none ends before all have begun.
+void meet_all(int threads) {
+  std::atomic<int> begun{0};
+  tbb::task_group group;
+  const auto wait = [&] {
+    ++begun;
+    while (begun < threads) std::this_thread::yield();
+  };
+  for (int i = 1; i < threads; ++i) group.run(wait);
+  wait();
+  group.wait();
+}
+
+TEST(Predictive, OneTwoAndThreeThreadsThatWorkTogetherChangeNothing) {
   ShownPlan show(swarm_scene(SwarmContent::Shape::Sphere, 25));
   show.settings.regulator.thresholds.geometric_px = 0.7;
   show.settings.render.samples = 16;
-  const Pipeline pipeline = show.pipeline({8, 2}, Joining::InPlace);
+  show.settings.view.display_px = {170, 130};  // many chunks
   const chunker::PreparedScene prepared(show.scene, show.settings.render);
-  std::vector<chunker::Frame> first;
-  for (const int threads : {1, 2, 3}) {
-    tbb::task_arena arena(threads);
-    PipelineState state(pipeline);
-    for (int f = 0; f < kFrames; ++f) {
-      const chunker::Frame frame = arena.execute([&] { return step(pipeline, state, f, &prepared).picture; });
-      if (threads == 1)
-        first.push_back(frame);
-      else
-        ASSERT_TRUE(same(frame, first[f])) << f;
+  for (const Joining joining : {Joining::EachFrame, Joining::InPlace}) {
+    const Pipeline pipeline = show.pipeline({8, 2}, joining);
+    std::vector<chunker::Frame> first;
+    for (const int threads : {1, 2, 3}) {
+      const tbb::global_control allowed(tbb::global_control::max_allowed_parallelism,
+                                        4);  // more than cores, perhaps
+      tbb::task_arena arena(threads);
+      Workers workers(arena);
+      PipelineState state(pipeline);
+      for (int f = 0; f < kPlanFrames; ++f) {
+        const chunker::Frame frame = arena.execute([&] {
+          meet_all(threads);
+          return step(pipeline, state, f, &prepared).picture;
+        });
+        if (threads == 1)
+          first.push_back(frame);
+        else
+          ASSERT_TRUE(same_picture(frame, first[f])) << f << " " << threads;
+      }
+      EXPECT_GE(workers.count(), static_cast<std::size_t>(threads));
     }
   }
 }
@@ -171,14 +147,14 @@ TEST(Predictive, AllWaysOfJoiningShowTheSameWhateverDeltaAndSamples) {
   for (const Joining joining : regulator::kAllJoinings) {
     const Pipeline pipeline = show.pipeline({8, 2}, joining);
     PipelineState state(pipeline);
-    for (int f = 0; f < kFrames; ++f) {
+    for (int f = 0; f < kPlanFrames; ++f) {
       const FrameReport report = step(pipeline, state, f, &prepared);
       for (const regulator::LayerDecision& decision : report.plan.decisions)
         ASSERT_LE(decision.shown_geometric_px, 1.5);
       if (joining == Joining::EachFrame)
         first.push_back(report.picture);
       else
-        ASSERT_TRUE(same(report.picture, first[f])) << f << " " << regulator::name(joining);
+        ASSERT_TRUE(same_picture(report.picture, first[f])) << f << " " << regulator::name(joining);
     }
   }
 }
@@ -188,7 +164,7 @@ TEST(Predictive, PlanAndDrawingAgree) {
   const chunker::PreparedScene prepared(show.scene, show.settings.render);
   const Pipeline pipeline = show.pipeline({8, 2}, Joining::Copy);
   PipelineState planned(pipeline), drawn(pipeline);
-  for (int f = 0; f < kFrames; ++f) {
+  for (int f = 0; f < kPlanFrames; ++f) {
     const FrameReport plan = step(pipeline, planned, f, nullptr),
                       picture = step(pipeline, drawn, f, &prepared);
     ASSERT_EQ(plan.plan.decisions.size(), picture.plan.decisions.size());
