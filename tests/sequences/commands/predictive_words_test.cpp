@@ -20,11 +20,11 @@ class PredictiveWords : public Tool {
 };
 
 TEST_F(PredictiveWords, FramesThatLastAreOfTwoPolicies) {
-  expect_bad_input("plan swarm.yaml --accumulate 0", {"--accumulate is 0", "must be 1 to 256"});
-  expect_bad_input("plan swarm.yaml --policy direct --accumulate 257", {"--accumulate is 257", "1 to 256"});
-  expect_bad_input("plan swarm.yaml --accumulate 8",
+  expect_bad_input("render swarm.yaml --accumulate 0", {"--accumulate is 0", "must be 1 to 256"});
+  expect_bad_input("render swarm.yaml --policy direct --accumulate 257", {"--accumulate is 257", "1 to 256"});
+  expect_bad_input("render swarm.yaml --accumulate 8",
                    {"--accumulate is 8", "'threshold'", "direct or predictive"});
-  expect_bad_input("plan swarm.yaml --policy predictive --lookahead 16 --accumulate many", {"--accumulate"});
+  expect_bad_input("render swarm.yaml --policy predictive --lookahead 16 --accumulate many", {"--accumulate"});
 }
 
 TEST_F(PredictiveWords, IntervalsAndSlicesAreOfPolicyPredictive) {

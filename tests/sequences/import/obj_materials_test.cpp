@@ -23,7 +23,7 @@ constexpr const char* kTriangle =
     "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nusemtl a\nf 1/1 2/2 3/3\n";
 
 /// A triangle in material 'a' that says `statements`.
-ImportedModel with_material(const std::string& statements) {
+ImportedModel obj_with_material(const std::string& statements) {
   const TemporaryFolder folder;
   folder.write("m.mtl", "newmtl a\n" + statements);
   folder.write("t.ppm", "P6\n1 1\n255\nabc");
@@ -39,7 +39,7 @@ void expect_color(const vec3& color, const vec3& expected) {
 }
 
 TEST(ObjMaterial, OneNumberIsGrey) {
-  const ImportedModel model = with_material("Kd 0.5\nKs 1\nNs 20\n");
+  const ImportedModel model = obj_with_material("Kd 0.5\nKs 1\nNs 20\n");
   expect_color(look_of(model).base_color, vec3(0.21404f));  // 0.5 in sRGB
   expect_color(look_of(model).specular, vec3(1));
   EXPECT_THAT(model.warnings, IsEmpty());
@@ -47,38 +47,39 @@ TEST(ObjMaterial, OneNumberIsGrey) {
 
 TEST(ObjMaterial, ColourOfCieXyz) {
   // The red of sRGB is (0.4124, 0.2126, 0.0193).
-  expect_color(look_of(with_material("Kd xyz 0.4124564 0.2126729 0.0193339\n")).base_color, vec3(1, 0, 0));
+  expect_color(look_of(obj_with_material("Kd xyz 0.4124564 0.2126729 0.0193339\n")).base_color,
+               vec3(1, 0, 0));
 }
 
 TEST(ObjMaterial, OddLineIsNamedAndTheRestHolds) {
-  const ImportedModel model = with_material("Ns 30\nKd spectral paint.rfl\nKs 1 1 1\n");
+  const ImportedModel model = obj_with_material("Ns 30\nKd spectral paint.rfl\nKs 1 1 1\n");
   EXPECT_THAT(model.warnings,
               ElementsAre(HasSubstr("m.mtl, line 3: 'Kd spectral paint.rfl' of material 'a'")));
   expect_color(look_of(model).base_color, vec3(0.31855f));  // the default, 0.6 in sRGB
   EXPECT_NEAR(look_of(model).shininess, 30, 1e-6);
   for (const char* odd :
        {"Kd 1 x 0\n", "Kd 1 0\n", "Kd\n", "Kd nan 0 0\n", "d half\n", "Kq 1 1 1\n", "illum\n"})
-    EXPECT_THAT(with_material(odd).warnings, ElementsAre(HasSubstr("m.mtl, line 2: '"))) << odd;
+    EXPECT_THAT(obj_with_material(odd).warnings, ElementsAre(HasSubstr("m.mtl, line 2: '"))) << odd;
 }
 
 TEST(ObjMaterial, DissolveCountsBeforeItsOpposite) {
-  EXPECT_NEAR(look_of(with_material("d 0.25\n")).opacity, 0.25, 1e-6);
-  EXPECT_NEAR(look_of(with_material("Tr 0.25\n")).opacity, 0.75, 1e-6);
-  EXPECT_NEAR(look_of(with_material("d 1\nTr 1\n")).opacity, 1, 1e-6);
+  EXPECT_NEAR(look_of(obj_with_material("d 0.25\n")).opacity, 0.25, 1e-6);
+  EXPECT_NEAR(look_of(obj_with_material("Tr 0.25\n")).opacity, 0.75, 1e-6);
+  EXPECT_NEAR(look_of(obj_with_material("d 1\nTr 1\n")).opacity, 1, 1e-6);
 }
 
 TEST(ObjMaterial, IlluminationSaysWhatIsLit) {
-  EXPECT_TRUE(look_of(with_material("Kd 1 0 0\nillum 0\n")).unlit);
-  const layers::Material dull = look_of(with_material("Ks 1 1 1\nNs 50\nillum 1\n"));
+  EXPECT_TRUE(look_of(obj_with_material("Kd 1 0 0\nillum 0\n")).unlit);
+  const layers::Material dull = look_of(obj_with_material("Ks 1 1 1\nNs 50\nillum 1\n"));
   EXPECT_FALSE(dull.unlit);
   expect_color(dull.specular, vec3(0));
-  expect_color(look_of(with_material("Ks 1 1 1\nNs 50\nillum 2\n")).specular, vec3(1));
-  EXPECT_THAT(with_material("illum 4\n").warnings, ElementsAre(HasSubstr("reflections and refraction")));
+  expect_color(look_of(obj_with_material("Ks 1 1 1\nNs 50\nillum 2\n")).specular, vec3(1));
+  EXPECT_THAT(obj_with_material("illum 4\n").warnings, ElementsAre(HasSubstr("reflections and refraction")));
 }
 
 /// Where the corners of the triangle look their picture up, v downwards.
 std::vector<layers::vec2> coordinates_with(const std::string& map) {
-  const ImportedModel model = with_material("map_Kd " + map + "\n");
+  const ImportedModel model = obj_with_material("map_Kd " + map + "\n");
   EXPECT_THAT(model.warnings, IsEmpty()) << map;
   EXPECT_EQ(model.scene.textures.size(), 1u) << map;
   return model.scene.meshes.at(0).uvs;
@@ -97,28 +98,32 @@ TEST(ObjMaterial, PictureIsScaledAndThenMoved) {
 }
 
 TEST(ObjMaterial, ClampedPictureEndsAtItsEdge) {
-  const ImportedModel model = with_material("map_Kd -clamp on t.ppm\n");
+  const ImportedModel model = obj_with_material("map_Kd -clamp on t.ppm\n");
   EXPECT_EQ(model.scene.textures.at(0).wrap_u, layers::Wrap::Clamp);
   EXPECT_EQ(model.scene.textures.at(0).wrap_v, layers::Wrap::Clamp);
   EXPECT_THAT(model.warnings, IsEmpty());
-  EXPECT_THAT(with_material("map_Kd -clamp on -s 2 2 t.ppm\n").warnings, ElementsAre(HasSubstr("-clamp")));
-  EXPECT_EQ(with_material("map_Kd -clamp off t.ppm\n").scene.textures.at(0).wrap_u, layers::Wrap::Repeat);
+  EXPECT_THAT(obj_with_material("map_Kd -clamp on -s 2 2 t.ppm\n").warnings,
+              ElementsAre(HasSubstr("-clamp")));
+  EXPECT_EQ(obj_with_material("map_Kd -clamp off t.ppm\n").scene.textures.at(0).wrap_u, layers::Wrap::Repeat);
 }
 
 TEST(ObjMaterial, OptionsThatChangeThePictureAreNamed) {
-  EXPECT_THAT(with_material("map_Kd -mm 0.2 1 t.ppm\n").warnings, ElementsAre(HasSubstr("-mm of map_Kd")));
-  EXPECT_THAT(with_material("map_Kd -mm 0 1 t.ppm\n").warnings, IsEmpty());  // it changes nothing
-  EXPECT_THAT(with_material("map_Kd -t 0.1 0.1 t.ppm\n").warnings, ElementsAre(HasSubstr("-t of map_Kd")));
-  EXPECT_THAT(with_material("map_Kd -s t.ppm\n").warnings, ElementsAre(HasSubstr("-s without its value")));
+  EXPECT_THAT(obj_with_material("map_Kd -mm 0.2 1 t.ppm\n").warnings,
+              ElementsAre(HasSubstr("-mm of map_Kd")));
+  EXPECT_THAT(obj_with_material("map_Kd -mm 0 1 t.ppm\n").warnings, IsEmpty());  // it changes nothing
+  EXPECT_THAT(obj_with_material("map_Kd -t 0.1 0.1 t.ppm\n").warnings,
+              ElementsAre(HasSubstr("-t of map_Kd")));
+  EXPECT_THAT(obj_with_material("map_Kd -s t.ppm\n").warnings,
+              ElementsAre(HasSubstr("-s without its value")));
 }
 
 TEST(ObjMaterial, EveryOtherMapIsNamedOnce) {
   for (const char* map : {"map_Ks", "map_Ns", "map_d", "map_Bump -bm 0.5", "bump", "disp", "decal", "map_Ke",
                           "refl -type sphere", "norm", "map_Pr", "map_Ka"}) {
     const std::string line = std::string(map) + " t.ppm\n";
-    EXPECT_THAT(with_material(line + line).warnings, ElementsAre(HasSubstr("not drawn"))) << map;
+    EXPECT_THAT(obj_with_material(line + line).warnings, ElementsAre(HasSubstr("not drawn"))) << map;
   }
-  EXPECT_THAT(with_material("map_Kd t.ppm\nmap_Ka t.ppm\n").warnings, IsEmpty());
+  EXPECT_THAT(obj_with_material("map_Kd t.ppm\nmap_Ka t.ppm\n").warnings, IsEmpty());
 }
 
 TEST(ObjMaterial, NamesThatBeginAlikeAreTwo) {
