@@ -44,22 +44,6 @@ std::optional<Policy> policy_from_name(std::string_view text) {
   return std::nullopt;
 }
 
-std::string_view name(Prediction prediction) {
-  switch (prediction) {
-    case Prediction::Known:
-      return "known";
-    case Prediction::Linear:
-      return "linear";
-  }
-  return "?";
-}
-
-std::optional<Prediction> prediction_from_name(std::string_view text) {
-  for (const Prediction prediction : kAllPredictions)
-    if (name(prediction) == text) return prediction;
-  return std::nullopt;
-}
-
 std::string_view name(ChoiceRule rule) { return rule == ChoiceRule::Best ? "best" : "paper"; }
 
 std::optional<ChoiceRule> choice_rule_from_name(std::string_view text) {
@@ -188,6 +172,16 @@ std::string first_defect(const Thresholds& t) {
   return {};
 }
 
+std::string first_defect(const layers::KalmanNoise& noise) {
+  const auto is_usable = [](double value) { return value >= 1e-12 && value <= 1e12; };
+  const char* rule = "from 1e-12 to 1e12";
+  if (!is_usable(noise.place_m)) return broken("kalman_place_m", noise.place_m, rule);
+  if (!is_usable(noise.turn_rad)) return broken("kalman_turn_rad", noise.turn_rad, rule);
+  if (!is_usable(noise.jerk_m)) return broken("kalman_jerk_m", noise.jerk_m, rule);
+  if (!is_usable(noise.jerk_rad)) return broken("kalman_jerk_rad", noise.jerk_rad, rule);
+  return {};
+}
+
 std::string first_defect(const BudgetOptions& b) {
   if (b.polygons < 0) return broken("budget_polygons", static_cast<double>(b.polygons), "at least 0");
   if (b.pixels < 0) return broken("budget_pixels", static_cast<double>(b.pixels), "at least 0");
@@ -217,6 +211,8 @@ std::string first_defect(const RegulatorOptions& options) {
              std::to_string(kLongestCut_frames) + " where intervals is data";
   }
   if (std::string defect = first_defect(options.regroup); !defect.empty()) return defect;
+  if (std::string defect = first_defect(options.latency); !defect.empty()) return defect;
+  if (std::string defect = first_defect(options.kalman); !defect.empty()) return defect;
   return first_defect(options.budget);
 }
 

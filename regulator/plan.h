@@ -17,6 +17,8 @@
 #include <vector>
 
 #include "fiducials/fiducials.h"
+#include "layers/predict_kalman.h"
+#include "regulator/latency_options.h"
 #include "regulator/predictive_options.h"
 #include "regulator/regroup.h"
 
@@ -77,15 +79,6 @@ struct LayerAssessment {
 inline constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
 inline constexpr double kNoLimitMs = std::numeric_limits<double>::infinity();
 
-/// What Lookahead knows of the frames ahead.
-enum class Prediction {
-  Known,   ///< the motion itself, as authored
-  Linear,  ///< the last two frames, extrapolated (layers/predict.h)
-};
-inline constexpr std::array kAllPredictions = {Prediction::Known, Prediction::Linear};
-std::string_view name(Prediction prediction);  ///< "known", "linear"
-std::optional<Prediction> prediction_from_name(std::string_view text);
-
 /// A layer is rendered again when a fiducial exceeds its threshold; fewer renders as they grow.
 struct Thresholds {
   double geometric_px = 4;     ///< ≥ 0; 0: reuse only what is identical
@@ -110,8 +103,9 @@ struct Thresholds {
 struct LookaheadOptions {
   int frames = 16;  ///< N ≥ 0; a sprite may be drawn as of an instant up to N frames ahead; 0 draws as of
                     ///< now; planning time grows with N, renders fall. Predictive: frames of a slice, ≥ 1
-  Prediction predict = Prediction::Known;  ///< what is known ahead; Linear draws more often, since it errs
-                                           ///< where the motion bends
+  Prediction predict =
+      Prediction::Known;  ///< Lookahead: what is known ahead; the others draw more often, since
+                          ///< they err where the motion bends
   bool operator==(const LookaheadOptions&) const = default;
 };
 
@@ -166,6 +160,8 @@ struct RegulatorOptions {
   BudgetOptions budget;
   PredictiveOptions predictive;
   RegroupOptions regroup;
+  LatencyOptions latency;      ///< all policies
+  layers::KalmanNoise kalman;  ///< of Prediction::Kalman, wherever it is
   bool operator==(const RegulatorOptions&) const = default;
 };
 

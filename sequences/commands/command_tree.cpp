@@ -294,6 +294,8 @@ void CommandTree::add_farm(const std::atomic<bool>& stop) {
       .option("--command", farm_.command, "slurm SEQUENCE: render or plan", farm_.command)
       .option("--at-most", farm_.at_most, "tasks at once; 0: as many as there is room for", "0")
       .option("--cpus", farm_.cpus, "of a task: its threads", "1")
+      .flag("--by-cost", farm_.by_cost,
+            "slurm SEQUENCE: first a job that plans; shards are then ranges that cost the same")
       .option("--task", farm_.task, "run: number of the task, from 0");
   command->callback([this, command, &stop] {
     farm_.options = command->remaining();

@@ -36,7 +36,7 @@ bool is_read_by(const Group& group, Policy policy) {
   return std::find(group.readers.begin(), group.readers.end(), policy) != group.readers.end();
 }
 
-std::vector<Group> groups_of(const CommandLine& line) {
+std::vector<Group> groups_of(const CommandLine& line, bool is_late) {
   using enum Policy;
   std::vector<Group> groups = {{{Hold, Interpolate}, {}},
                                {{Lookahead, Predictive}, {}},
@@ -64,7 +64,7 @@ std::vector<Group> groups_of(const CommandLine& line) {
   Given(groups[7].given)("--blend", line.blend);
   Given(groups[8].given)("--tree-k", line.tree_k)("--joining", line.joining)(
       "--motion-norm", line.motion_norm)("--intervals", line.intervals)("--adaptive", line.adaptive);
-  Given(groups[9].given)("--predict", line.predict);
+  if (!is_late) Given(groups[9].given)("--predict", line.predict);
   Given(groups[10].given)("--regroup", line.regroup)("--regroup-prices", line.regroup_prices)(
       "--regroup-ceiling-ms", line.regroup_ceiling_ms)("--regroup-dwell", line.regroup_dwell);
   return groups;
@@ -72,8 +72,8 @@ std::vector<Group> groups_of(const CommandLine& line) {
 
 }  // namespace
 
-std::string of_another_policy(const CommandLine& line, Policy policy) {
-  for (const Group& group : groups_of(line)) {
+std::string of_another_policy(const CommandLine& line, Policy policy, bool is_late) {
+  for (const Group& group : groups_of(line, is_late)) {
     if (group.given.empty() || is_read_by(group, policy)) continue;
     std::vector<std::string> readers;
     for (const Policy reader : group.readers) readers.emplace_back(regulator::name(reader));
@@ -87,7 +87,7 @@ std::string of_another_policy(const CommandLine& line, Policy policy) {
 
 std::vector<std::string> options_of_other_policies(const CommandLine& line, Policy policy) {
   std::vector<std::string> names;
-  for (const Group& group : groups_of(line))
+  for (const Group& group : groups_of(line, !line.latency_ms.empty()))
     if (!is_read_by(group, policy)) names.insert(names.end(), group.given.begin(), group.given.end());
   return names;
 }

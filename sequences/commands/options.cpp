@@ -2,6 +2,7 @@
 #include "sequences/commands/options.h"
 
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <tuple>
@@ -62,16 +63,38 @@ std::pair<int, int> frame_range_from(const std::string& text, int frames) {
   return range;
 }
 
-/// Only Lookahead looks at frames that it could be wrong about: the oracle is a floor because it knows them.
+/// "RENDER" or "RENDER,WARP".
+void apply_latency(const std::string& text, regulator::LatencyOptions& latency) {
+  if (text.empty()) return;
+  const std::size_t comma = text.find(',');
+  const auto number = [&](std::string_view part) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(part.data(), part.data() + part.size(), value);
+    if (error != std::errc() || end != part.data() + part.size() || !std::isfinite(value))
+      throw InputError("--latency-ms is '" + text + "', must be RENDER or RENDER,WARP in milliseconds");
+    return value;
+  };
+  latency.render_ms = number(std::string_view(text).substr(0, comma));
+  latency.warp_ms = comma == std::string::npos ? regulator::kNoLastWarp_ms
+                                               : number(std::string_view(text).substr(comma + 1));
+  if (const std::string defect = first_defect(latency); !defect.empty())
+    throw InputError("--latency-ms is '" + text + "': " + defect);
+}
+
+/// Only Lookahead looks at frames that it could be wrong about (the oracle is a floor because it knows them), and only a
+/// late run at a camera.
 void apply_prediction(const CommandLine& line, regulator::RegulatorOptions& options) {
   if (line.predict.empty()) return;
   const regulator::Prediction prediction = choice("--predict", line.predict, kPredictionWords);
   const bool looks_ahead =
       options.policy == regulator::Policy::Lookahead || options.policy == regulator::Policy::Predictive;
-  if (prediction != regulator::Prediction::Known && !looks_ahead)
+  const bool is_late = options.latency.render_ms > 0;
+  if (prediction != regulator::Prediction::Known && !looks_ahead && !is_late)
     throw InputError("--predict is '" + line.predict + "', but --policy is '" +
-                     std::string(regulator::name(options.policy)) + "', must be lookahead or predictive");
-  options.lookahead.predict = prediction;
+                     std::string(regulator::name(options.policy)) +
+                     "', must be lookahead or predictive, or come with --latency-ms above 0");
+  if (looks_ahead) options.lookahead.predict = prediction;
+  if (is_late) options.latency.predict = prediction;
 }
 
 void apply_limits(const CommandLine& line, regulator::RegulatorOptions& options) {
@@ -112,7 +135,8 @@ void require_consistent(const CommandLine& line, const regulator::RegulatorOptio
     throw InputError("--budget-gap compares choices within a budget, but --policy is '" +
                      std::string(regulator::name(options.policy)) + "', must be budget");
   if (const std::string defect = regulator::first_defect(options); !defect.empty()) throw InputError(defect);
-  if (const std::string foreign = of_another_policy(line, options.policy); !foreign.empty())
+  if (const std::string foreign = of_another_policy(line, options.policy, options.latency.render_ms > 0);
+      !foreign.empty())
     throw InputError(foreign);
 }
 
@@ -132,6 +156,7 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (!line.adaptive.empty()) options.predictive.adaptive = choice("--adaptive", line.adaptive, kSwitchWords);
   apply_regrouping(line, options.regroup);
   apply_limits(line, options);
+  apply_latency(line.latency_ms, options.latency);
   apply_prediction(line, options);
   require_consistent(line, options);
 }

@@ -36,6 +36,7 @@ struct CommandLine {
   std::string color_warp, stagger, late_chunks;  ///< "on", "off"
   std::string visibility;                        ///< "cto,eye,eye"
   std::string joining, motion_norm, intervals, adaptive;
+  std::string latency_ms;  ///< "RENDER" or "RENDER,WARP"
   std::string regroup, regroup_prices;
   std::optional<double> regroup_ceiling_ms;
   std::optional<int> regroup_dwell;

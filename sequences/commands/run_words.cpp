@@ -54,9 +54,13 @@ void add_policy(CLI::App& command, CommandLine& line) {
           "a power of --tree-k",
           std::to_string(kUsual.lookahead.frames))
       .option("--predict", line.predict,
-              "policies lookahead and predictive: frames ahead are known, or linear: extrapolated from the "
-              "last two",
-              std::string(word_of(kUsual.lookahead.predict, kPredictionWords)))
+              alternatives(kPredictionWords) +
+                  ": what policies lookahead and predictive know of frames ahead, and what a late run expects of the camera",
+              "known; with --latency-ms: held")
+      .option("--latency-ms", line.latency_ms,
+              "RENDER or RENDER,WARP: decisions and sprites know the camera's poses of so long ago; sprites "
+              "are warped once more just before they are shown, with poses of WARP ago",
+              "0")
       .option("--tree-k", line.tree_k,
               "policy predictive: into how many parts an interval of the plan is cut",
               std::to_string(kUsual.predictive.children))

@@ -9,7 +9,9 @@ namespace talisman::sequences {
 
 namespace {
 
+using layers::KalmanNoise;
 using regulator::BudgetOptions;
+using regulator::LatencyOptions;
 using regulator::LookaheadOptions;
 using regulator::PredictiveOptions;
 using regulator::RegroupOptions;
@@ -27,8 +29,10 @@ Format<regulator::Policy> policy() {
 }
 
 Format<regulator::Prediction> prediction() {
-  using enum regulator::Prediction;
-  return choice<regulator::Prediction>({{"known", Known}, {"linear", Linear}});
+  std::vector<std::pair<std::string, regulator::Prediction>> choices;
+  for (const regulator::Prediction prediction : regulator::kAllPredictions)
+    choices.emplace_back(regulator::name(prediction), prediction);
+  return choice(choices);
 }
 
 Format<regulator::ChoiceRule> choice_rule() {
@@ -63,7 +67,37 @@ Table<LookaheadOptions> lookahead_keys() {
            "slice, "
            "a power of `tree_k`")
       .key("predict", &L::predict, prediction(), "",
-           "policies lookahead and predictive: motion ahead is known, or goes on as it is");
+           "policies lookahead and predictive: motion ahead is known, or expected: all stays as it is, goes on with its "
+           "velocity, or "
+           "with its acceleration");
+}
+
+Table<LatencyOptions> latency_keys() {
+  using L = LatencyOptions;
+  return Table<L>()
+      .key("latency_ms", &L::render_ms, number({0, regulator::kLongestLatency_ms}), "ms",
+           "decisions and sprites know the poses of the camera of so long ago; 0: that of now")
+      .key("latency_warp_ms", &L::warp_ms, number({0, regulator::kLongestLatency_ms}), "ms",
+           "just before they are shown sprites are warped once more, with poses of so long ago; at most "
+           "latency_ms")
+      .otherwise("no last warp")
+      .key("latency_predict", &L::predict, prediction(), "",
+           "what is expected of the camera from there: it stays, goes on with its velocity, or with its "
+           "acceleration; known: as if nothing were old");
+}
+
+Table<KalmanNoise> kalman_keys() {
+  using K = KalmanNoise;
+  constexpr Range kNoise{1e-12, 1e12};
+  return Table<K>()
+      .key("kalman_place_m", &K::place_m, number(kNoise), "m",
+           "prediction kalman: standard deviation of a measured place; more follows later and smoother")
+      .key("kalman_turn_deg", &K::turn_rad, degrees({1e-9, 180}), "°",
+           "prediction kalman: of a measured rotation, likewise")
+      .key("kalman_jerk_m", &K::jerk_m, number(kNoise), "m s⁻³ √s",
+           "prediction kalman: how much the acceleration changes, root of its density; more follows sooner")
+      .key("kalman_jerk_rad", &K::jerk_rad, number(kNoise), "rad s⁻³ √s",
+           "prediction kalman: of the turning, likewise");
 }
 
 Table<PredictiveOptions> predictive_keys() {
@@ -197,7 +231,12 @@ const Table<RegulatorOptions>& regulator_keys() {
           .include(&R::lookahead, lookahead_keys())
           .include(&R::budget, budget_keys())
           .include(&R::predictive, predictive_keys())
-          .include(&R::regroup, regroup_keys());
+          .include(&R::regroup, regroup_keys())
+          .include(&R::latency, latency_keys())
+          .include(&R::kalman, kalman_keys())
+          .rule("latency_warp_ms at most latency_ms", [](const R& r) {
+            return r.latency.warp_ms == regulator::kNoLastWarp_ms || r.latency.warp_ms <= r.latency.render_ms;
+          });
   return table;
 }
 

@@ -56,7 +56,7 @@ std::vector<DirectGroup> direct_groups(const Pipeline& pipeline, int frame) {
   return groups;
 }
 
-DirectPicture draw_directly(const Drawing& drawing, int frame) {
+DirectPicture draw_directly(const Drawing& drawing, int frame, const layers::dmat3& carried) {
   const Pipeline& pipeline = drawing.pipeline;
   layers::SpritePlacement whole_display;
   whole_display.size_px = pipeline.settings.view.display_px;
@@ -70,6 +70,7 @@ DirectPicture draw_directly(const Drawing& drawing, int frame) {
     sprites.push_back(std::move(result.sprite));
     placed.emplace_back();
     placed.back().alpha_multiplier = group.alpha;
+    placed.back().screen_from_sprite = carried;
   }
   for (std::size_t i = 0; i < placed.size(); ++i) placed[i].sprite = &sprites[i];
   picture.composite =

@@ -44,7 +44,9 @@ struct DirectPicture {
   chunker::RenderCounters render;
 };
 
-/// `drawing` is of the author's layers, and of the scene at `frame`.
-DirectPicture draw_directly(const Drawing& drawing, int frame);
+/// `drawing` is of the author's layers, and of the scene at `frame`. `carried`: how the whole picture is moved when it is
+/// shown (latency/last_warp.h).
+DirectPicture draw_directly(const Drawing& drawing, int frame,
+                            const layers::dmat3& carried = layers::dmat3(1.0));
 
 }  // namespace talisman::sequences

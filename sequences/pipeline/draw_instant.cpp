@@ -9,6 +9,7 @@
 #include "layers/check.h"
 #include "layers/rest.h"
 #include "regulator/policies.h"
+#include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/layer_planning.h"
 
 namespace talisman::sequences {
@@ -24,7 +25,7 @@ class Judge {
         layer_(layer),
         frame_rendered_(frame_rendered),
         limit_px_(most_px(pipeline, state.layers[layer])) {
-    if (!predicts(pipeline) && !pipeline.culling) rest_.emplace(pipeline.scene, state.layers[layer]);
+    if (!predicts(pipeline) && !is_late(pipeline) && !pipeline.culling) rest_.emplace(pipeline.scene, state.layers[layer]);
   }
 
   bool serves(int instant, int frame) {

@@ -14,6 +14,7 @@
 #include "regulator/budget.h"
 #include "regulator/plan.h"
 #include "sequences/pipeline/frame_order.h"
+#include "sequences/pipeline/latency/latency_report.h"
 #include "sequences/pipeline/layer_table.h"
 #include "sequences/pipeline/lookahead_report.h"
 #include "sequences/pipeline/predictive/predictive_report.h"
@@ -89,6 +90,7 @@ struct FrameReport {
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   std::optional<PredictiveReport> predictive;      ///< of that policy
   std::optional<LookaheadReport> lookahead;        ///< of the policies that look ahead
+  std::optional<LateDisplay> late;                 ///< of a run that knows old poses only
   StageTimes times;
   chunker::Frame picture;  ///< empty when only planned
 };

@@ -6,10 +6,8 @@
 #include <cstdlib>
 
 #include "fiducials/fiducials.h"
-#include "layers/advance.h"
 #include "layers/built_effects.h"
 #include "layers/moving_picture.h"
-#include "layers/predict.h"
 #include "layers/shade_state.h"
 #include "regulator/policies.h"
 #include "regulator/resolution.h"
@@ -114,30 +112,6 @@ warp::Curve curve_of(const Pipeline& pipeline, const Layer& layer) {
   return warp::curve_from_name(layer.preferences.warp).value_or(pipeline.settings.curve);
 }
 
-bool predicts(const Pipeline& pipeline) {
-  return pipeline.settings.regulator.policy == regulator::Policy::Lookahead &&
-         pipeline.settings.regulator.lookahead.predict == regulator::Prediction::Linear;
-}
-
-double time_of(const Pipeline& pipeline, int frame) { return frame / pipeline.settings.fps; }
-
-SceneFrame scene_at(const Pipeline& pipeline, int frame) {
-  return pipeline.scene.at(time_of(pipeline, frame));
-}
-
-const SceneFrame& scene_now(const Pipeline& pipeline, PipelineState& state, int frame) {
-  if (state.walked_by != pipeline.motion) state.walked = {};  // of another scene, perhaps
-  state.walked_by = pipeline.motion;
-  pipeline.motion->advance(state.walked, time_of(pipeline, frame));
-  return state.walked;
-}
-
-SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame) {
-  SceneFrame now = scene_at(pipeline, known);
-  if (known == frame) return now;
-  return layers::predict_linear(known > 0 ? scene_at(pipeline, known - 1) : now, now, frame - known);
-}
-
 namespace {
 
 using CapturedIterator = std::map<int, CapturedFrame>::iterator;
@@ -177,13 +151,6 @@ bool continues(const Pipeline& pipeline, const BeatMemory& beat, int frame) {
 
 }  // namespace
 
-SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, int frame) {
-  const bool is_ahead = state.motion && frame > state.motion->frame;
-  return is_ahead
-             ? layers::predict_linear(state.motion->before, state.motion->now, frame - state.motion->frame)
-             : scene_at(pipeline, frame);
-}
-
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
   if (!state.authored.is_copy_of(pipeline.authored)) state.beat.reset();
   adopt_layers(pipeline, state);
@@ -197,16 +164,11 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame) {
   state.now = frame;
   forget_seen(state);
   state.motion.reset();
-  if (predicts(pipeline)) {
-    SceneFrame now = scene_at(pipeline, frame);
-    state.motion = MotionKnown{frame, frame > 0 ? scene_at(pipeline, frame - 1) : now, now};
-  }
+  if (predicts(pipeline)) state.motion = motion_known(pipeline, frame);
   if (policy == Policy::Oracle) return;  // any frame of the sequence may be asked for again
   forget(state, captured.begin(), captured.lower_bound(frame));
   if (policy != Policy::Lookahead) forget(state, captured.upper_bound(frame + 1), captured.end());
 }
-
-namespace {
 
 void capture_layer(const LayerTable& table, const Layer& layer, const layers::FrameCapture& capture,
                    std::vector<LayerState>& states) {
@@ -215,8 +177,6 @@ void capture_layer(const LayerTable& table, const Layer& layer, const layers::Fr
   else
     capture.capture(layer, table.bound(layer.id), states[layer.id]);
 }
-
-}  // namespace
 
 const std::vector<LayerState>& captured_states(const Pipeline& pipeline, PipelineState& state, int frame) {
   CapturedFrame& captured = captured_frame(state, frame);

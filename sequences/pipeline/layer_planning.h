@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "regulator/shadow_maps.h"
+#include "sequences/pipeline/latency/known_scene.h"
 #include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
@@ -20,21 +21,6 @@ bool draws_sprites(const Pipeline& pipeline);
 /// The family of warps, and its norm, that carries the layer's sprite.
 warp::Curve curve_of(const Pipeline& pipeline, const layers::Layer& layer);
 
-/// Are the frames ahead predicted rather than known?
-bool predicts(const Pipeline& pipeline);
-
-double time_of(const Pipeline& pipeline, int frame);
-
-/// The scene of a frame as far as it is known in the frame that is planned.
-layers::SceneFrame scene_as_known(const Pipeline& pipeline, const PipelineState& state, int frame);
-
-/// The scene at `frame` as it is known or, where frames ahead are predicted, as it is expected in frame
-/// `known` ≤ `frame` from that frame and the one before.
-layers::SceneFrame scene_at(const Pipeline& pipeline, int frame);
-/// The same, at the cost of what moved since the last call; the reference holds until the next one.
-const layers::SceneFrame& scene_now(const Pipeline& pipeline, PipelineState& state, int frame);
-layers::SceneFrame scene_expected(const Pipeline& pipeline, int known, int frame);
-
 /// Makes `frame` the frame that is planned, under this pipeline: forgets what is past, what was only
 /// expected, and what was judged under other options.
 void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame);
@@ -44,6 +30,10 @@ void begin_frame(const Pipeline& pipeline, PipelineState& state, int frame);
 /// captured if they exist in the frame that was ordered last. The reference holds until aggregates are made.
 const std::vector<layers::LayerState>& captured_states(const Pipeline& pipeline, PipelineState& state,
                                                        int frame);
+
+/// The state of one layer into `states`; that of a shade is made of its base's, which comes first.
+void capture_layer(const LayerTable& table, const layers::Layer& layer, const layers::FrameCapture& capture,
+                   std::vector<layers::LayerState>& states);
 
 /// The state of one layer where a motion is asked for: captured also where the layer is not seen.
 const layers::LayerState& captured_motion(const Pipeline& pipeline, PipelineState& state, int layer,

@@ -8,6 +8,7 @@
 #include "layers/effects.h"
 #include "layers/polyhedron.h"
 #include "sequences/pipeline/culling/culling.h"
+#include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/light_planning.h"
 
 namespace talisman::sequences {
@@ -19,7 +20,8 @@ Pipeline make_pipeline(const layers::Scene& scene, layers::LayerSet layers, cons
                     {},
                     layers::calls_for_visibility_sort(layers.layers),
                     std::make_shared<const layers::SceneMotion>(scene),
-                    nullptr};
+                    nullptr,
+                    regulator::is_late(settings.regulator.latency) ? camera_alone(scene) : nullptr};
   if (regulator::follows_light(settings.regulator)) pipeline.moving_carriers = layers::moving_carriers(scene);
   BoundTable bounds;
   for (const layers::Layer& layer : layers.layers)

@@ -80,6 +80,8 @@ struct Pipeline {
   bool sorts_visibility = false;     ///< the effect visibility_sort is called for
   std::shared_ptr<const layers::SceneMotion> motion;
   std::shared_ptr<const Culling> culling;  ///< null where Settings::visibility asks for nothing
+  std::shared_ptr<const layers::Scene>
+      rig;  ///< the camera alone, of a late run (latency/late_camera.h); or null
 };
 
 /// Since when is a layer at rest (regulator/settle.h)? Kept only where the regulator asks for it.
@@ -116,10 +118,10 @@ struct CapturedFrame {
   std::vector<layers::LightState> lights;  ///< of the scene
 };
 
-/// The last two frames of the motion, as far as a regulator that predicts knows it.
+/// The last frames of the motion, as far as a regulator that predicts knows it.
 struct MotionKnown {
   int frame = 0;
-  layers::SceneFrame before, now;  ///< `before` is `now` at frame 0
+  std::vector<layers::SceneFrame> past;  ///< the oldest first; the last one is `frame`
 };
 
 /// A sprite that fades out while the layer's fresh one fades in (sequences/pipeline/cross_fading.h).
@@ -161,6 +163,7 @@ struct PipelineState {
   ShadowMapStore shadow_maps;
   layers::SceneFrame walked;  ///< the scene as it was evaluated last, by `walked_by` (layers/advance.h)
   std::shared_ptr<const layers::SceneMotion> walked_by;
+  layers::SceneFrame seen_late;  ///< the same as a late run knows it; empty for others
   Unshared<CullingMemory> culling;
   DepthMemory depth;
   std::vector<int> uploaded;  ///< by moving picture: the frame that the texture memory holds, or -1

@@ -18,6 +18,8 @@
 #include "sequences/pipeline/direct_picture.h"
 #include "sequences/pipeline/draw_instant.h"
 #include "sequences/pipeline/extended_composite.h"
+#include "sequences/pipeline/latency/last_warp.h"
+#include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_beside.h"
 #include "sequences/pipeline/predictive/plan_buffers.h"
@@ -369,7 +371,7 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
     const SeenParts* const seen = seen_at(pipeline, state, report.frame);
     DirectPicture picture = draw_directly(
         {pipeline, pipeline.authored, state.shadow_maps, prepared, now, {}, seen ? &seen->part : nullptr},
-        report.frame);
+        report.frame, report.late ? report.late->whole_picture : layers::dmat3(1.0));
     result = std::move(picture.composite);
     report.render += picture.render;
     report.times.render_ms = render_watch.ms();
@@ -448,6 +450,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   explain_order(report);
   explain_culling(pipeline, state, report);
   report.shown = sprites_shown(pipeline, state, fades, report);
+  show_late(pipeline, state, report);
   report.times.plan_ms = plan_watch.ms() - bookkeeping_ms;  // the yardstick is not part of the plan
 
   // Execute.
@@ -456,6 +459,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
 }
 
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared) {
+  if (is_late(pipeline)) return draw_direct(in_time(pipeline), frame, prepared);
   if (pipeline.settings.accumulate > 1)
     return accumulated_picture(pipeline, frame, [&](const Pipeline& pictures, int picture) {
       return draw_direct(pictures, picture, prepared);

@@ -26,7 +26,8 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
 
 /// The frame as the policies `direct` and `reference` show it, without touching any state: the truths of
 /// --quality. The reference of one frame sorts it by itself: what a run still holds merged after a cycle, it
-/// shows apart, which differs only where a pixel is covered in part.
+/// shows apart, which differs only where a pixel is covered in part. Of a run that knows old poses only, `direct` is
+/// the truth all the same: what the camera sees. `reference` is as late as the run.
 chunker::Frame draw_direct(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared);
 chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker::PreparedScene& prepared);
 

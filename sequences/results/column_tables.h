@@ -25,7 +25,8 @@ struct DecisionRow {
         name(report.layers[of_layer.layer].name),
         assessment(report.assessments[of_layer.layer]),
         decision(of_layer),
-        placement(sprite_placement) {}
+        placement(sprite_placement),
+        late(report.late ? &*report.late : nullptr) {}
   DecisionRow(const FrameReport& report, const ShadowMapRow& map)
       : frame(report.frame), name(map.name), assessment(map.assessment), decision(map.decision) {}
 
@@ -34,7 +35,8 @@ struct DecisionRow {
   const regulator::LayerAssessment& assessment;
   const regulator::LayerDecision& decision;
   const layers::SpritePlacement* placement =
-      nullptr;  ///< of the sprite shown; null: none is, or it is a map's
+      nullptr;                        ///< of the sprite shown; null: none is, or it is a map's
+  const LateDisplay* late = nullptr;  ///< null: no pose is old, or it is a map's
 };
 
 /// All rows of a frame, in the order of decisions.jsonl: the author's layers, the aggregates that exist, the

@@ -137,6 +137,19 @@ DecisionColumns what_is_shown() {
                     })};
 }
 
+/// Absent where no pose is old.
+DecisionColumns late_columns() {
+  return {computed<Row>(
+      "true_px", "true_px", "px",
+      "with --latency-ms: largest distance of a characteristic point, as it is shown, from where "
+      "the true camera sees it; null: none is in both views",
+      [](const Row& r) {
+        if (r.late == nullptr) return Value(Absent{});
+        const double px = r.late->layer_px[r.decision.layer];
+        return px < 0 ? Value(Null{}) : value_of(px);
+      })};
+}
+
 DecisionColumns geometric_columns() {
   return {
       computed<Row>(
@@ -278,8 +291,8 @@ const ColumnTable<DecisionRow>& decision_table() {
   static const ColumnTable<DecisionRow> table = [] {
     ColumnTable<DecisionRow> t{"decisions", "talisman.decision/1", {}, {}};
     for (const DecisionColumns& part :
-         {what_was_done(), warp_columns(), placement_columns(), what_is_shown(), geometric_columns(),
-          photometric_columns(), remaining_fiducials(), cost_columns()})
+         {what_was_done(), warp_columns(), placement_columns(), what_is_shown(), late_columns(),
+          geometric_columns(), photometric_columns(), remaining_fiducials(), cost_columns()})
       t.columns.insert(t.columns.end(), part.begin(), part.end());
     t.groups = {{"sprite", "of layers whose sprite is shown", true,
                  [](const DecisionRow& r) { return r.placement != nullptr; }},

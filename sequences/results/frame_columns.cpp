@@ -244,6 +244,34 @@ FrameColumns frame_lookahead() {
           [](auto& l) -> auto& { return l.lookahead->evaluated; })};
 }
 
+FrameColumns frame_latency() {
+  const auto column = [](const char* name, const char* unit, const char* meaning, auto member) {
+    return stored<FrameLine>(std::string("latency_") + name, std::string("latency/") + name, unit, meaning,
+                             member);
+  };
+  return {
+      column(
+          "drawn_turn_deg", "°", "between the camera that decisions and sprites know and the true one",
+          [](auto& l) -> auto& { return l.latency->drawn_turn_deg; }),
+      column(
+          "shown_turn_deg", "°", "of the camera that the last warp knows, likewise",
+          [](auto& l) -> auto& { return l.latency->shown_turn_deg; }),
+      column(
+          "drawn_moved_m", "m", "between the places of the first two",
+          [](auto& l) -> auto& { return l.latency->drawn_moved_m; }),
+      column(
+          "shown_moved_m", "m", "of the camera of the last warp, likewise",
+          [](auto& l) -> auto& { return l.latency->shown_moved_m; }),
+      column(
+          "true_px", "px", "largest true_px of a layer", [](auto& l) -> auto& { return l.latency->true_px; }),
+      column(
+          "true_mean_px", "px", "mean over the layers that are shown",
+          [](auto& l) -> auto& { return l.latency->true_mean_px; }),
+      column(
+          "layers_missing", "layers", "that the true camera sees and the frame does not show",
+          [](auto& l) -> auto& { return l.latency->layers_missing; })};
+}
+
 FrameColumns light_layers() {
   return {stored<FrameLine>(
       "light_beside_px", "light_layers/beside_px", "px",
@@ -321,6 +349,8 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
       {"predictive", "with --policy predictive", false,
        [](const FrameLine& l) { return l.predictive.has_value(); },
        [](FrameLine& l) { l.predictive.emplace(); }},
+      {"latency", "with --latency-ms", false, [](const FrameLine& l) { return l.latency.has_value(); },
+       [](FrameLine& l) { l.latency.emplace(); }},
       {"budget_gap", "with --budget-gap", false, [](const FrameLine& l) { return l.budget_gap.has_value(); },
        [](FrameLine& l) { l.budget_gap.emplace(); }},
       {"quality", "with --quality", false, [](const FrameLine& l) { return l.quality.has_value(); },
@@ -336,7 +366,7 @@ const ColumnTable<FrameLine>& frame_table() {
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
           written_pictures(), light_layers(), moving_pictures(), seams(), frame_expressions(),
-          frame_budget_gap(), frame_lookahead(), frame_predictive(),
+          frame_budget_gap(), frame_lookahead(), frame_predictive(), frame_latency(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

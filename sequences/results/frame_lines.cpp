@@ -90,6 +90,7 @@ FrameLine line_of(const FrameReport& report) {
     line.predictive->buffer_bytes = 0;
     line.predictive->joined = {};
   }
+  if (report.late) line.latency = report.late->report;
   line.upload_bytes = report.upload_bytes;
   if (!report.picture.pixels.empty()) add_drawing(line, report);
   return line;

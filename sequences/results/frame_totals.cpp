@@ -58,6 +58,18 @@ void add_gap(const regulator::BudgetGap& gap, GapSummary& sum) {
   sum.max = std::max(sum.max, gap.gap());
 }
 
+void add_latency(const LatencyReport& late, LatencyTotals& totals) {
+  ++totals.frames;
+  for (double LatencyReport::*number :
+       {&LatencyReport::drawn_turn_deg, &LatencyReport::shown_turn_deg, &LatencyReport::drawn_moved_m,
+        &LatencyReport::shown_moved_m, &LatencyReport::true_px, &LatencyReport::true_mean_px}) {
+    totals.sum.*number += late.*number;
+    totals.most.*number = std::max(totals.most.*number, late.*number);
+  }
+  totals.sum.layers_missing += late.layers_missing;
+  totals.most.layers_missing = std::max(totals.most.layers_missing, late.layers_missing);
+}
+
 void add_comparison(const Quality& quality, MeanQuality& sum) {
   sum.mse += std::isfinite(quality.psnr_db) ? 255.0 * 255.0 / std::pow(10.0, quality.psnr_db / 10) : 0;
   sum.ssim += quality.ssim;
@@ -73,6 +85,7 @@ void FrameTotals::add(const FrameLine& line) {
   slowest_sort_ms_ = std::max(slowest_sort_ms_, line.times.sort_ms);
   if (line.visibility) add_sort(*line.visibility, visibility_, resolved_);
   if (line.budget_gap) add_gap(*line.budget_gap, gap_);
+  if (line.latency) add_latency(*line.latency, latency_);
   if (line.upload_bytes) upload_bytes_ = upload_bytes_.value_or(0) + *line.upload_bytes;
   if (line.predictive) surprises_ = surprises_.value_or(0) + line.predictive->surprises;
   if (line.lookahead) {

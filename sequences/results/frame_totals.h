@@ -33,6 +33,13 @@ struct MeanQuality {
   double psnr_db() const { return mse > 0 ? 10 * std::log10(255.0 * 255.0 / mse) : INFINITY; }
 };
 
+/// Of a run that knows old poses only. Means: the sums.
+struct LatencyTotals {
+  int frames = 0;
+  LatencyReport sum, most;
+  double mean(double LatencyReport::*number) const { return frames > 0 ? sum.*number / frames : 0; }
+};
+
 class FrameTotals {
  public:
   void add(const FrameLine& line);
@@ -49,6 +56,7 @@ class FrameTotals {
   const std::optional<std::int64_t>& upload_bytes() const { return upload_bytes_; }
   const std::optional<LookaheadReport>& lookahead() const { return lookahead_; }
   const std::optional<std::int64_t>& surprises() const { return surprises_; }  ///< of policy predictive
+  const LatencyTotals& latency() const { return latency_; }
   double slowest_sort_ms() const { return slowest_sort_ms_; }
   /// Empty where no frame was compared.
   std::optional<MeanQuality> quality(Quality FrameQuality::*which) const;
@@ -72,6 +80,7 @@ class FrameTotals {
   std::optional<OpenSeams> open_seams_;
   std::optional<LookaheadReport> lookahead_;
   std::optional<std::int64_t> surprises_;
+  LatencyTotals latency_;
   double slowest_sort_ms_ = 0;
   MeanQuality of_total_, of_reuse_, of_resampling_;  ///< the sums
 };

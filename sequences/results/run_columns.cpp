@@ -179,6 +179,31 @@ RunColumns run_budget_gap() {
                            [](const RunRow& r) { return r.gap.exact_frames; })};
 }
 
+RunColumns run_latency() {
+  const auto column = [](const char* name, const char* unit, const char* meaning, auto get) {
+    return computed<RunRow>(std::string("latency_") + name, std::string("latency/") + name, unit, meaning,
+                            get);
+  };
+  using L = LatencyReport;
+  return {
+      column("drawn_turn_mean_deg", "°",
+             "between the camera that decisions and sprites know and the true one, mean over the frames",
+             [](const RunRow& r) { return r.sums.latency().mean(&L::drawn_turn_deg); }),
+      column("drawn_turn_max_deg", "°", "the largest of them",
+             [](const RunRow& r) { return r.sums.latency().most.drawn_turn_deg; }),
+      column("shown_turn_mean_deg", "°", "of the camera that the last warp knows, likewise",
+             [](const RunRow& r) { return r.sums.latency().mean(&L::shown_turn_deg); }),
+      column("shown_turn_max_deg", "°", "likewise",
+             [](const RunRow& r) { return r.sums.latency().most.shown_turn_deg; }),
+      column("true_mean_px", "px", "true_px of the layers that are shown: their mean, mean over the frames",
+             [](const RunRow& r) { return r.sums.latency().mean(&L::true_mean_px); }),
+      column("true_max_px", "px", "the largest of all",
+             [](const RunRow& r) { return r.sums.latency().most.true_px; }),
+      column("layers_missing", "layers",
+             "that the true camera sees and a frame does not show, added up over the frames",
+             [](const RunRow& r) { return r.sums.latency().sum.layers_missing; })};
+}
+
 template <typename Which>
 RunColumns run_quality(const std::string& group, const std::string& what, Which) {
   const auto column = [&](const char* name, const char* unit, const std::string& meaning, auto get) {
@@ -202,6 +227,7 @@ std::vector<ColumnGroup<RunRow>> run_groups() {
       {"predictive", "with --policy predictive", false,
        [](const RunRow& r) { return r.sums.surprises().has_value(); }},
       {"budget_gap", "with --budget-gap", false, [](const RunRow& r) { return r.gap.frames > 0; }},
+      {"latency", "with --latency-ms", false, [](const RunRow& r) { return r.sums.latency().frames > 0; }},
       {"quality", "with --quality", false, [](const RunRow& r) { return r.quality.has_value(); }},
       {"quality_of_reuse", "with --quality", false,
        [](const RunRow& r) { return r.quality_of_reuse.has_value(); }},
@@ -225,7 +251,7 @@ const ColumnTable<RunRow>& run_table() {
     ColumnTable<RunRow> t{"run", "talisman.summary/1", {}, run_groups()};
     for (const RunColumns& part :
          {what_was_run(), run_work(), run_visibility(), modelled(), compression(), run_motion_ahead(),
-          run_budget_gap(),
+          run_budget_gap(), run_latency(),
           run_quality(
               "quality", "displayed against `direct`", [](auto& r) -> auto& { return r.quality; }),
           run_quality(

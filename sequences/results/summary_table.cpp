@@ -143,6 +143,12 @@ std::string special_rows(const RunRow& run) {
   if (const std::int64_t surprises = run.sums.surprises().value_or(0); surprises > 0)
     text += formatted("  surprises         %lld: the plan was dropped, and the frame drawn whole\n",
                       static_cast<long long>(surprises));
+  if (const LatencyTotals& late = run.sums.latency(); late.frames > 0)
+    text += formatted(
+        "  old poses         the camera as shown is off by %.3f deg in the mean, %.3f at most\n"
+        "                    layers by %.3f px in the mean, %.1f at most; %d times one is missing\n",
+        late.mean(&LatencyReport::shown_turn_deg), late.most.shown_turn_deg,
+        late.mean(&LatencyReport::true_mean_px), late.most.true_px, late.sum.layers_missing);
   if (const ResolvedCounters& r = run.resolved; r.components > 0)
     text += formatted(
         "  expressions       %d, for %d sprites that would have been merged; %d reads, %d operators, "

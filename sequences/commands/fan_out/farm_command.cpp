@@ -78,11 +78,23 @@ void require_meaning(const FarmOptions& o) {
     throw InputError("--out is '" + o.out + "', and a sweep has its own, rule: without --sweep alone");
   if (o.sweep.empty() && o.sequence.empty()) throw InputError("farm slurm needs a SEQUENCE, or --sweep FILE");
   if ((o.action == "run") != (o.task >= 0)) throw InputError("--task is one of farm run, must come with it");
+  if (o.by_cost && !o.sweep.empty())
+    throw InputError("--by-cost plans one sequence, must be given without --sweep");
   if (o.command != "render" && o.command != "plan")
     throw InputError("--command is '" + o.command + "', rule: render or plan");
   require_range("--shards", o.shards, 1, kMostShards);
   require_range("--at-most", o.at_most, 0, kMostShards);
   require_range("--cpus", o.cpus, 1, 1024);
+}
+
+/// The plan by whose costs the shards are cut. Where it fails they say so, each, and the merge that they are missing.
+SlurmJob plan_of_costs(const FarmOptions& o, const std::string& sequence, const std::string& out,
+                       const std::string& logs) {
+  command_line_from(o.sequence, o.options, true);  // it has the options of a plan alone
+  std::string command = "plan " + in_shell({o.sequence}) + " --out " + in_shell({out + "-costs"});
+  if (!o.options.empty()) command += " " + in_shell(o.options);
+  return {"plan", "plan-" + sequence, logs + "/plan.log", "", "", o.cpus, command + " --quiet --no-report",
+          false};
 }
 
 /// The options are read as the shards will read them: what is wrong with them is said now, not by N tasks.
@@ -97,10 +109,11 @@ std::string slurm_of_sequence(const FarmOptions& o) {
   command += " --shard \"$SLURM_ARRAY_TASK_ID/" + std::to_string(o.shards) +
              "\" --resume --quiet --threads " + std::to_string(o.cpus);
   const std::string logs = out + "-slurm";  // beside it: the folder of a run holds nothing else
+  if (o.by_cost) command += " --plan " + in_shell({out + "-costs"});
   const SlurmJob array{"array",
                        "talisman-" + sequence.name,
                        logs + "/shard-%a.log",
-                       "",
+                       o.by_cost ? "plan" : "",
                        array_of(static_cast<std::size_t>(o.shards), o.at_most),
                        o.cpus,
                        command,
@@ -108,8 +121,11 @@ std::string slurm_of_sequence(const FarmOptions& o) {
   const SlurmJob merge{
       "merge", "merge-" + sequence.name, logs + "/merge.log", "array", "", 1, "merge " + in_shell({out}),
       true};
-  return script(sequence.name + " in " + std::to_string(o.shards) + " shards, and their merge", logs,
-                {array, merge});
+  std::vector<SlurmJob> jobs = {array, merge};
+  if (o.by_cost) jobs.insert(jobs.begin(), plan_of_costs(o, sequence.name, out, logs));
+  return script(sequence.name + " in " + std::to_string(o.shards) + " shards" +
+                    (o.by_cost ? " that cost the same" : "") + ", and their merge",
+                logs, jobs);
 }
 
 std::string slurm_of_sweep(const FarmOptions& o) {

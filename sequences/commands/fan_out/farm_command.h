@@ -4,6 +4,7 @@
 /// `talisman farm`: runs in parts, and sweeps, under the queue that a cluster has. Nothing is submitted here.
 ///
 ///   farm slurm SEQUENCE --shards N [OPTIONS]         a script that submits a job array of N shards and their merge
+///        … --by-cost                                 and, before them, the plan by whose costs the shards are cut
 ///   farm slurm --sweep FILE [--shards N]             the same for the jobs of a sweep (sweep.h), and their table
 ///   farm list --sweep FILE                           the manifest: a line per task, "TASK<TAB>talisman …"
 ///   farm run --sweep FILE --task T                   one task; a job that is complete is left as it is
@@ -25,6 +26,7 @@ struct FarmOptions {
   std::string sequence;
   std::vector<std::string> options;  ///< of its run: all that is none of farm
   std::string sweep, out, command = "render";
+  bool by_cost = false;         ///< shards are ranges that cost the same, by a plan that is made before them
   int shards = 1, at_most = 0;  ///< tasks at once; 0: as many as there is room for
   int cpus = 1;                 ///< of a task
   int task = -1;

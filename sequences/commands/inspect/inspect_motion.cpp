@@ -70,7 +70,8 @@ std::string text_of(const TraceOptions& options, TraceFormat format, const Trace
                     findings.step_s.max());
   text += speeds_line("moves", findings.speed_m_per_s, "m/s");
   text += speeds_line("turns", findings.turn_deg_per_s, "°/s");
-  return text + gap_lines(findings) + jump_lines(findings);
+  text += gap_lines(findings) + jump_lines(findings);
+  return findings.remark.empty() ? text : text + "  it        " + findings.remark + "\n";
 }
 
 Json speeds_json(const LogHistogram& speed) {
@@ -87,18 +88,20 @@ Json json_of(const TraceOptions& options, TraceFormat format, const TraceFinding
                      {"moved_m", jump.moved_m},
                      {"times", number_or_null(jump.times)},
                      {"line", jump.line}});
-  return {{"schema", "talisman.motion_trace/1"},
-          {"file", utf8_from(options.file)},
-          {"format", word_of(format)},
-          {"poses", findings.poses},
-          {"length_s", findings.length_s},
-          {"way_m", findings.way_m},
-          {"step_s", speeds_json(findings.step_s)},
-          {"speed_m_per_s", speeds_json(findings.speed_m_per_s)},
-          {"turn_deg_per_s", speeds_json(findings.turn_deg_per_s)},
-          {"gaps", gaps},
-          {"jump_count", findings.jump_count},
-          {"jumps", jumps}};
+  Json json = {{"schema", "talisman.motion_trace/1"},
+               {"file", utf8_from(options.file)},
+               {"format", word_of(format)},
+               {"poses", findings.poses},
+               {"length_s", findings.length_s},
+               {"way_m", findings.way_m},
+               {"step_s", speeds_json(findings.step_s)},
+               {"speed_m_per_s", speeds_json(findings.speed_m_per_s)},
+               {"turn_deg_per_s", speeds_json(findings.turn_deg_per_s)},
+               {"gaps", gaps},
+               {"jump_count", findings.jump_count},
+               {"jumps", jumps}};
+  if (!findings.remark.empty()) json["remark"] = findings.remark;
+  return json;
 }
 
 }  // namespace

@@ -2,7 +2,8 @@
 #pragma once
 
 /// `talisman accuracy --latency SEQUENCE [--warp-ms W]`: error over latency and predictor, and what a last warp saves
-/// (experiments/latency/latency_curve.h).
+/// (experiments/latency/latency_curve.h); and what is shown by layers and by whole frames that are reprojected
+/// (experiments/latency/displayed.h).
 
 #include <iosfwd>
 #include <string>

@@ -69,7 +69,8 @@ class BvhReader {
     period_s_ = number();
   }
 
-  void read_frames(const std::vector<int>& chain, std::optional<double> fps, const PoseSink& sink) {
+  /// Returns what is to be said of them, or nothing.
+  std::string read_frames(const std::vector<int>& chain, std::optional<double> fps, const PoseSink& sink) {
     if (!fps && !(period_s_ > 0))
       text_.fail("has Frame Time: " + word_ + ", rule: seconds above 0, or the key fps");
     std::vector<double> values(channel_count_);
@@ -85,12 +86,27 @@ class BvhReader {
       const auto count = static_cast<double>(frame);
       pose.stamp = {0, fps ? count / *fps : count * period_s_};
       pose.line = text_.line();
-      if (!sink(pose)) return;
+      if (!sink(pose)) return {};
     }
+    return read_past_rest();
+  }
+
+  /// There are files that have whole frames more than they say.
+  std::string read_past_rest() {
     std::string_view word;
-    if (text_.next_word(word))
-      text_.fail("goes on with " + word_in_message(word) + " after frame " + std::to_string(frames_ - 1) +
+    std::size_t numbers = 0;
+    std::string first;
+    bool are_numbers = true;
+    while (are_numbers && text_.next_word(word)) {
+      if (numbers++ == 0) first = std::string(word);
+      are_numbers = trace_number(word).has_value();
+    }
+    if (numbers == 0) return {};
+    if (!are_numbers || channel_count_ == 0 || numbers % channel_count_ != 0)
+      text_.fail("goes on with " + word_in_message(first) + " after frame " + std::to_string(frames_ - 1) +
                  ", rule: as many frames as Frames: says");
+    return "holds " + std::to_string(numbers / channel_count_) + " frames more than the " +
+           std::to_string(frames_) + " that it says, which are left out";
   }
 
   /// From the root to the joint of this name.
@@ -195,12 +211,13 @@ class BvhReader {
 
 }  // namespace
 
-void read_bvh(TraceText& text, const std::string& joint, std::optional<double> fps, const PoseSink& sink) {
+std::string read_bvh(TraceText& text, const std::string& joint, std::optional<double> fps,
+                     const PoseSink& sink) {
   BvhReader reader(text);
   reader.read_skeleton();
   const std::vector<int> chain = reader.chain_to(joint);
   reader.read_head_of_motion();
-  reader.read_frames(chain, fps, sink);
+  return reader.read_frames(chain, fps, sink);
 }
 
 }  // namespace talisman::sequences

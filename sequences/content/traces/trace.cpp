@@ -163,31 +163,39 @@ const char* word_of(TraceFormat format) {
   return "";
 }
 
-void read_poses(const TraceOptions& options, const PoseSink& sink) {
+std::string read_poses(const TraceOptions& options, const PoseSink& sink) {
   const TraceFormat format = options.format.value_or(format_of_name(options.file));
   require_options(options, format);
   TraceText text(options.file);
   switch (format) {
     case TraceFormat::Tum:
-      return read_tum(text, sink);
+      read_tum(text, sink);
+      break;
     case TraceFormat::Euroc:
-      return read_euroc(text, sink);
+      read_euroc(text, sink);
+      break;
     case TraceFormat::Colmap:
-      return read_colmap(text, options.fps.value_or(1), sink);
+      read_colmap(text, options.fps.value_or(1), sink);
+      break;
     case TraceFormat::Iwer:
-      return read_iwer(text, sink);
+      read_iwer(text, sink);
+      break;
     case TraceFormat::Bvh:
       return read_bvh(text, options.joint, options.fps, sink);
   }
+  return {};
 }
 
 Trace read_trace(const TraceOptions& options, double last_s) {
   PoseKeeper keeper(options, last_s);
   PoseSieve sieve(options, [&](const TracePose& pose) { return keeper.take(pose); });
-  read_poses(options, [&](const RawPose& pose) { return sieve.add(pose); });
+  const std::string remark = read_poses(options, [&](const RawPose& pose) { return sieve.add(pose); });
   sieve.finish();
   Trace trace = std::move(keeper).trace();
   trace.findings = sieve.findings();
+  if (!remark.empty()) trace.warnings.push_back(options.file + ": " + remark);
+  if (!options.missing.empty())
+    trace.warnings.push_back(options.file + " stands in for a trace: " + options.missing);
   say_ends(options, last_s, trace);
   say_gaps(options, last_s, trace);
   say_jumps(options, last_s, trace);
@@ -196,9 +204,11 @@ Trace read_trace(const TraceOptions& options, double last_s) {
 
 TraceFindings look_through_trace(const TraceOptions& options) {
   PoseSieve sieve(options, [](const TracePose&) { return true; });
-  read_poses(options, [&](const RawPose& pose) { return sieve.add(pose); });
+  const std::string remark = read_poses(options, [&](const RawPose& pose) { return sieve.add(pose); });
   sieve.finish();
-  return sieve.findings();
+  TraceFindings findings = sieve.findings();
+  findings.remark = remark;
+  return findings;
 }
 
 layers::TransformTrack track_of(Trace trace, Resampling resample) {

@@ -58,6 +58,8 @@ enum class Jumps {
 
 struct TraceOptions {
   std::string file;                   ///< where it lies
+  std::string otherwise;              ///< another one that stands in where that is not there; empty: none
+  std::string missing;                ///< what `otherwise` stands in for: why it is not there; empty: it is
   std::optional<TraceFormat> format;  ///< empty: as the file's name says (format_of_name)
   std::string joint = "Head";         ///< of bvh
   std::optional<double> fps;          ///< > 0; of colmap, which has no time, and of bvh, instead of its own

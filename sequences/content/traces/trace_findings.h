@@ -7,6 +7,7 @@
 /// 1 %; memory does not grow with the trace. Of fewer they are exact.
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace talisman::sequences {
@@ -51,6 +52,7 @@ struct TraceFindings {
   std::vector<TraceGap> longest_steps;  ///< at most 1000, the longest first
   std::vector<TraceJump> jumps;         ///< the first 1000
   std::int64_t jump_count = 0;
+  std::string remark;  ///< what is to be said of the file; empty: nothing
 
   double period_s() const { return step_s.quantile(0.5); }
   /// Steps of more than three periods, of `longest_steps`.

@@ -11,6 +11,14 @@ const std::vector<std::pair<std::string, TraceFormat>> kFormats = {{"tum", Trace
                                                                    {"iwer", TraceFormat::Iwer},
                                                                    {"bvh", TraceFormat::Bvh}};
 
+void read_trace_file(const YamlValue& value, TraceOptions& trace) try {
+  trace.file = asset().read(value);
+} catch (const InputError& error) {
+  if (trace.otherwise.empty()) throw;
+  trace.file = trace.otherwise;
+  trace.missing = error.what();
+}
+
 }  // namespace
 
 const Table<TraceOptions>& trace_keys() {
@@ -21,7 +29,10 @@ const Table<TraceOptions>& trace_keys() {
             trace.sequence_file = self.file();
             trace.line = self.line();
           })
-          .key("file", &T::file, asset(), "", "recorded poses")
+          .key("otherwise", &T::otherwise, asset(), "",
+               "of the same format: stands in where `file` is not there, which is said")
+          .otherwise("none")
+          .custom("file", asset().type, read_trace_file, "", "recorded poses")
           .required()
           .key("format", &T::format, choice(kFormats), "", "how they are written")
           .otherwise("as the name says: .bvh, .json iwer, images.txt colmap, .csv euroc, else tum")

@@ -14,10 +14,11 @@ void read_euroc(TraceText& text, const PoseSink& sink);
 void read_colmap(TraceText& text, double fps, const PoseSink& sink);
 /// Characters go to a SAX parser: of the recording only the entry at hand is held.
 void read_iwer(TraceText& text, const PoseSink& sink);
-/// `fps`: instead of what the file says.
-void read_bvh(TraceText& text, const std::string& joint, std::optional<double> fps, const PoseSink& sink);
+/// `fps`: instead of what the file says. Returns what is to be said of the file, or nothing.
+std::string read_bvh(TraceText& text, const std::string& joint, std::optional<double> fps,
+                     const PoseSink& sink);
 
-/// The one of `options`.
-void read_poses(const TraceOptions& options, const PoseSink& sink);
+/// The one of `options`. Returns what is to be said of the file, or nothing.
+std::string read_poses(const TraceOptions& options, const PoseSink& sink);
 
 }  // namespace talisman::sequences

@@ -3,8 +3,8 @@
 
 /// What does it cost that a frame is made of a pose that is old by the time it is shown, and what does a last warp save?
 ///
-/// The picture for time t is drawn with the camera that is predicted (predictors.h) from what was known at t − RENDER. Just
-/// before it is shown it is warped to the camera that is predicted from what is known at t − WARP ≤ RENDER. The true
+/// The picture for time t is drawn with the camera that is expected (pipeline/latency/late_camera.h) from what was known at t − RENDER. Just
+/// before it is shown it is warped to the camera that is expected from what is known at t − WARP ≤ RENDER. The true
 /// camera at t judges:
 ///
 ///   error_px of a point = |where it is shown − where it would be|      characteristic points of all layers that are on the
@@ -27,7 +27,7 @@
 #include <vector>
 
 #include "sequences/content/sequence.h"
-#include "sequences/experiments/latency/predictors.h"
+#include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/pipeline.h"
 #include "sequences/results/planned.h"
 
@@ -41,13 +41,17 @@ std::string_view name(LastWarp warp);
 /// Milliseconds.
 inline constexpr std::array kRenderLatencies_ms = {0.0, 10.0, 20.0, 50.0, 100.0};
 
+/// From what is known least to what is known best.
+inline constexpr std::array kExpectations = {regulator::Prediction::Held, regulator::Prediction::Linear,
+                                             regulator::Prediction::Kalman, regulator::Prediction::Known};
+
 struct Spread {
   double p50 = 0, p95 = 0, max = 0;
 };
 
 struct LatencyResult {
   double render_ms = 0;
-  PosePredictor predictor = PosePredictor::Held;
+  regulator::Prediction predictor = regulator::Prediction::Held;
   Spread turn_deg;                                      ///< over the frames
   std::array<Spread, kAllLastWarps.size()> error_px{};  ///< over points and frames, by LastWarp
 };

@@ -11,6 +11,8 @@ namespace talisman::sequences {
 
 namespace {
 
+using regulator::Prediction;
+
 std::string csv_of(const LatencyCurve& curve) {
   std::string csv = "render_ms,warp_ms,predict,turn_p50_deg,turn_p95_deg,turn_max_deg";
   for (const LastWarp warp : kAllLastWarps)
@@ -34,7 +36,7 @@ Plot plot_of(const LatencyCurve& curve) {
             {"RENDER", "ms", false, true, {}},
             {"error, 95th percentile", "px", false, true, {}},
             {}};
-  const auto add = [&](PosePredictor predictor, LastWarp warp) {
+  const auto add = [&](Prediction predictor, LastWarp warp) {
     PlotSeries series{
         std::string(name(predictor)) + (warp == LastWarp::None ? "" : ", " + std::string(name(warp))), {}};
     for (const LatencyResult& r : curve.results)
@@ -42,10 +44,10 @@ Plot plot_of(const LatencyCurve& curve) {
         series.points.push_back({r.render_ms, r.error_px[static_cast<std::size_t>(warp)].p95});
     plot.series.push_back(std::move(series));
   };
-  for (const PosePredictor predictor : {PosePredictor::Held, PosePredictor::Linear, PosePredictor::Kalman})
+  for (const Prediction predictor : {Prediction::Held, Prediction::Linear, Prediction::Kalman})
     add(predictor, LastWarp::None);
   for (const LastWarp warp : {LastWarp::Homography, LastWarp::Layers, LastWarp::Depth})
-    add(PosePredictor::Held, warp);
+    add(Prediction::Held, warp);
   return plot;
 }
 

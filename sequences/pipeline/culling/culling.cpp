@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
+#include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/layer_planning.h"
 
 namespace talisman::sequences {
@@ -33,7 +34,13 @@ void move_boxes(const Pipeline& pipeline, CullingMemory& memory, int frame) {
   const auto fit = [&](int part) {
     memory.boxes[part] = part_box(memory.now, scene.parts[part], culling.boxes()[scene.parts[part].mesh]);
   };
-  culling.motion().advance(memory.now, time_of(pipeline, frame));
+  if (is_late(pipeline)) {
+    culling.motion().advance(memory.walked, time_of(pipeline, frame));
+    memory.now = memory.walked;
+    look_from(memory.now, camera_known(pipeline, frame, frame));
+  } else {
+    culling.motion().advance(memory.now, time_of(pipeline, frame));
+  }
   if (memory.boxes.size() != scene.parts.size()) {
     memory.boxes.resize(scene.parts.size());
     for (std::size_t part = 0; part < scene.parts.size(); ++part) fit(static_cast<int>(part));

@@ -61,7 +61,8 @@ class Culling {
 /// The scene as it was looked at last, and what was seen.
 struct CullingMemory {
   std::shared_ptr<const Culling> of;
-  layers::SceneFrame now;
+  layers::SceneFrame now;           ///< as the run knows it
+  layers::SceneFrame walked;        ///< as it is; empty where that is `now`
   std::vector<layers::Box3> boxes;  ///< by part
   layers::BoxTree tree;
   std::optional<CellMemory> cells;

@@ -321,6 +321,7 @@ chunker::CompositeResult draw_predicted(const Drawing& drawing, PipelineState& s
   if (joined != nullptr) sprite = joined->sprite();
   chunker::PlacedSprite placed;
   placed.sprite = &sprite;
+  if (report.late) placed.screen_from_sprite = report.late->whole_picture;
   chunker::CompositeResult result =
       chunker::composite({&placed, 1}, display_px, drawing.pipeline.scene.background);
   report.times.composite_ms = memory.joining_ms() - joined_before_ms + watch.ms();

@@ -125,6 +125,91 @@ TEST_F(Farm, SlurmScriptSubmitsAnArrayAndItsMerge) {
       "'o ut'\n");
 }
 
+/// As maps of a sweep file, in an order that the test knows.
+std::string twenty_four_settings() {
+  std::string settings = "{policy: reference}";
+  for (const char* policy : {"hold", "interpolate"})
+    for (const char* frames : {"2", "3", "5", "8"})
+      settings += std::string(", {policy: ") + policy + ", hold: " + frames + "}";
+  for (const char* policy : {"threshold", "oracle"})
+    for (const char* px : {"0.25", "0.5", "1", "2", "4", "8"})
+      settings += std::string(", {policy: ") + policy + ", geometric-px: " + px + "}";
+  for (const char* frames : {"1", "2", "4"})
+    settings += std::string(", {policy: threshold, blend: ") + frames + "}";
+  return settings;
+}
+
+/// 24 settings on four tasks that go on beside each other: the same numbers as the experiment that runs them one by one.
+TEST_F(Farm, SweepOfTwentyFourSettingsIsTheTableOfTheExperiment) {
+  write("sweep.yaml", "out: sweep\nsequences: [passing.yaml]\noptions: {size: 96x72}\nsettings: [" +
+                          twenty_four_settings() + "]\n");
+  write("task.sh", "for k in $(seq $1 4 23); do '" + tool() +
+                       "' farm run --sweep sweep.yaml --task $k || exit 1; done\n");
+  const Outcome tasks = run_shell(
+      "for t in 0 1 2 3; do bash task.sh $t & pids=\"$pids $!\"; done; for p in $pids; do wait $p || exit 1; "
+      "done");
+  EXPECT_EQ(tasks.exit_code, 0) << tasks.output;
+  const Outcome table = run("farm table --sweep sweep.yaml");
+  EXPECT_EQ(table.exit_code, 0) << table.output;
+  const Outcome experiment = run(
+      "accuracy --regulator passing.yaml --size 96x72 --quality-every 20 --out experiment --progress none");
+  ASSERT_EQ(experiment.exit_code, 0) << experiment.output;
+  const std::vector<std::string> rows = lines("sweep/sweep.csv"), header = cells_of(rows[0]);
+  ASSERT_EQ(rows.size(), 25u);
+  const auto cell = [&](std::size_t row, const char* column) {
+    const auto at = std::find(header.begin(), header.end(), column) - header.begin();
+    return std::stod(cells_of(rows[row])[static_cast<std::size_t>(at)]);
+  };
+  // In the order of the sweep; what the experiment has beside them is passed by.
+  const auto same_series = [](std::size_t row) -> std::pair<std::string, double> {
+    static const double kFrames[] = {2, 3, 5, 8}, kPx[] = {0.25, 0.5, 1, 2, 4, 8}, kBlends[] = {1, 2, 4};
+    if (row == 0) return {"reference", 0};
+    if (row <= 8) return {row <= 4 ? "hold" : "interpolate", kFrames[(row - 1) % 4]};
+    if (row <= 20) return {row <= 14 ? "threshold" : "oracle", kPx[(row - 9) % 6]};
+    return {"threshold blended", kBlends[row - 21]};
+  };
+  int compared = 0;
+  const auto report = nlohmann::json::parse(read("experiment/regulator.json"));
+  for (const auto& setting : report["settings"])
+    for (std::size_t row = 0; row < 24; ++row) {
+      const auto [series, knob] = same_series(row);
+      if (setting["policy"] != series || (row > 0 && setting["knob"] != knob)) continue;
+      ++compared;
+      for (const auto& [ours, theirs] : {std::pair{"mean_update_rate", "mean_update_rate"},
+                                         {"polygons_rendered", "polygons"},
+                                         {"max_geometric_px", "max_geometric_px"}})
+        EXPECT_DOUBLE_EQ(cell(row + 1, ours), setting[theirs].get<double>())
+            << series << " " << knob << " " << ours;
+    }
+  EXPECT_EQ(compared, 24);
+}
+
+/// Three jobs, run here one after the other as a queue would: the shards are cut by the costs of the plan.
+TEST_F(Farm, SlurmScriptByCostPlansFirst) {
+  const Outcome script =
+      run("farm slurm passing.yaml --shards 3 --by-cost --size 96x72 --frames 0-11 --out run");
+  ASSERT_EQ(script.exit_code, 0) << script.output;
+  EXPECT_THAT(script.output, HasSubstr("# passing in 3 shards that cost the same, and their merge."));
+  EXPECT_THAT(script.output, HasSubstr("--dependency=afterany:$plan"));
+  write("submit", script.output);
+  std::filesystem::create_directory(path("bin"));
+  // A queue that runs each task at once.
+  write(
+      "bin/sbatch",
+      "#!/bin/bash\njob=$(cat)\ntasks=0\nfor word in \"$@\"; do case $word in --array=*) tasks=${word##*-};; "
+      "esac; done\nfor i in $(seq 0 $tasks); do SLURM_ARRAY_TASK_ID=$i bash -c \"$job\" >> log 2>&1; "
+      "done\necho "
+      "7\n");
+  const Outcome outcome =
+      run_shell("chmod +x bin/sbatch; export TALISMAN='" + tool() + "'; PATH=\"$PWD/bin:$PATH\" bash submit");
+  EXPECT_EQ(outcome.output, "plan 7 array 7 merge 7\n") << read("log");
+  EXPECT_EQ(frame_hashes("run").size(), 12u) << read("log");
+  EXPECT_THAT(script.output, HasSubstr("--plan run-costs"));
+  EXPECT_EQ(lines("run-costs/frames.jsonl").size(), 12u);
+  expect_bad_input("farm slurm passing.yaml --shards 3 --by-cost --video", {"video"});
+  expect_bad_input("farm slurm --sweep sweep.yaml --by-cost", {"--by-cost plans one sequence"});
+}
+
 TEST_F(Farm, WhatIsAskedInAWrongWayIsRefused) {
   expect_bad_input("farm paint", {"farm is asked for 'paint', rule: one of slurm, list, run, table"});
   expect_bad_input("farm slurm", {"farm slurm needs a SEQUENCE, or --sweep FILE"});

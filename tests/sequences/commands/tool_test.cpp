@@ -130,7 +130,7 @@ TEST_F(Tool, BadArgumentsExitWithTwoAndNameOptionValueAndRule) {
   expect_bad_input("render cube.obj --budget-ms nan", {"--budget-ms", "nan", "a finite number"});
   expect_bad_input("render cube.obj --min-resolution 2", {"min_resolution", "2", "at most 1"});
   expect_bad_input("plan cube.obj --budget-gap", {"--budget-gap", "threshold", "must be budget"});
-  expect_bad_input("plan cube.obj --predict crystal", {"--predict", "crystal", "known, linear"});
+  expect_bad_input("plan cube.obj --predict crystal", {"--predict", "crystal", "known, held, linear"});
   expect_bad_input("plan cube.obj --predict linear --policy oracle",
                    {"--predict", "oracle", "must be lookahead"});
   expect_bad_input("render cube.obj --cutoff-px nan", {"--cutoff-px", "nan", "a finite number"});
@@ -165,7 +165,8 @@ TEST_F(Tool, BadBudgetsExitWithTwoAndNameOptionValueAndRule) {
 }
 
 TEST_F(Tool, BadPredictionsExitWithTwoAndNameOptionValueAndRule) {
-  expect_bad_input("plan carousel --policy lookahead --predict 1", {"--predict is '1'", "known, linear"});
+  expect_bad_input("plan carousel --policy lookahead --predict 1",
+                   {"--predict is '1'", "known, held, linear"});
   for (const std::string policy : {"threshold", "budget --budget-pixels 9"})
     expect_bad_input("plan carousel --predict linear --policy " + policy,
                      {"--predict is 'linear'", policy.substr(0, policy.find(' ')), "must be lookahead"});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What old poses cost: a camera that only turns is warped exactly by one homography, one that only moves is not; and
-// predictions are exact on the motion that they assume.
+// the more is predicted the less is off.
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -16,8 +16,8 @@
 namespace talisman::sequences {
 namespace {
 
-using layers::dmat4;
 using layers::dvec3;
+using regulator::Prediction;
 using tests::TemporaryFolder;
 
 constexpr const char* kThings =
@@ -42,7 +42,7 @@ LatencyCurve curve_of(const std::function<tests::KnownPose(double)>& pose_at, do
   return measure_latency(sequence, own_settings(sequence), {8, 59}, warp_ms);
 }
 
-const LatencyResult& row(const LatencyCurve& curve, double render_ms, PosePredictor predictor) {
+const LatencyResult& row(const LatencyCurve& curve, double render_ms, Prediction predictor) {
   return *std::find_if(curve.results.begin(), curve.results.end(), [&](const LatencyResult& r) {
     return r.render_ms == render_ms && r.predictor == predictor;
   });
@@ -62,7 +62,7 @@ tests::KnownPose turning(double t_s) {
 /// affine map of a layer is not, by what perspective does over its extent.
 TEST(Latency, OfACameraThatOnlyTurnsIsUndoneByOneHomography) {
   const LatencyCurve curve = curve_of(turning, 0);
-  const LatencyResult& held = row(curve, 50, PosePredictor::Held);
+  const LatencyResult& held = row(curve, 50, Prediction::Held);
   EXPECT_GT(max_px(held, LastWarp::None), 20);
   EXPECT_LE(max_px(held, LastWarp::Homography), 1e-6);
   EXPECT_LE(max_px(held, LastWarp::Depth), 1e-6);
@@ -70,8 +70,8 @@ TEST(Latency, OfACameraThatOnlyTurnsIsUndoneByOneHomography) {
   EXPECT_LT(max_px(held, LastWarp::Layers), 2);
   // What the last warp knows no better than the picture does, it cannot mend.
   const LatencyCurve late = curve_of(turning, 50);
-  EXPECT_EQ(max_px(row(late, 50, PosePredictor::Held), LastWarp::Depth),
-            max_px(row(late, 50, PosePredictor::Held), LastWarp::None));
+  EXPECT_EQ(max_px(row(late, 50, Prediction::Held), LastWarp::Depth),
+            max_px(row(late, 50, Prediction::Held), LastWarp::None));
 }
 
 TEST(Latency, OfACameraThatOnlyMovesIsLeftByAHomography) {
@@ -80,7 +80,7 @@ TEST(Latency, OfACameraThatOnlyMovesIsLeftByAHomography) {
         return tests::KnownPose{dvec3{0.5 * t_s, 0, 0}, glm::dquat(1, 0, 0, 0)};
       },
       0);
-  const LatencyResult& held = row(curve, 50, PosePredictor::Held);
+  const LatencyResult& held = row(curve, 50, Prediction::Held);
   EXPECT_GT(max_px(held, LastWarp::None), 2);
   EXPECT_NEAR(max_px(held, LastWarp::Homography), max_px(held, LastWarp::None), 1e-9);
   EXPECT_LT(max_px(held, LastWarp::Layers), max_px(held, LastWarp::None) / 2);
@@ -112,7 +112,7 @@ TEST(Latency, OfTheHeldPoseIsThatOfAnIndependentComputation) {
     return values[static_cast<std::size_t>(0.95 * static_cast<double>(values.size() - 1))];
   };
   const LatencyCurve curve = curve_of(turning, 0);
-  const LatencyResult& held = row(curve, 50, PosePredictor::Held);
+  const LatencyResult& held = row(curve, 50, Prediction::Held);
   EXPECT_NEAR(held.error_px[0].p95, p95(errors), 0.05 * p95(errors));
   EXPECT_NEAR(held.turn_deg.p95, p95(turns), 0.05 * p95(turns));
   EXPECT_EQ(curve.points, static_cast<std::int64_t>(errors.size()));
@@ -120,50 +120,12 @@ TEST(Latency, OfTheHeldPoseIsThatOfAnIndependentComputation) {
 
 TEST(Latency, IsSmallerTheMoreIsPredicted) {
   const LatencyCurve curve = curve_of(turning, 0);
-  const auto turn = [&](PosePredictor predictor) { return row(curve, 50, predictor).turn_deg.p95; };
-  EXPECT_LT(turn(PosePredictor::Linear), turn(PosePredictor::Held) / 2);
-  EXPECT_LT(turn(PosePredictor::Kalman), turn(PosePredictor::Linear) / 2);
-  EXPECT_EQ(turn(PosePredictor::Known), 0);
-  for (const PosePredictor predictor : kAllPredictors)
+  const auto turn = [&](Prediction predictor) { return row(curve, 50, predictor).turn_deg.p95; };
+  EXPECT_LT(turn(Prediction::Linear), turn(Prediction::Held) / 2);
+  EXPECT_LT(turn(Prediction::Kalman), turn(Prediction::Linear) / 2);
+  EXPECT_EQ(turn(Prediction::Known), 0);
+  for (const Prediction predictor : kExpectations)
     EXPECT_EQ(max_px(row(curve, 0, predictor), LastWarp::None), 0) << name(predictor);
-}
-
-// --- Predictors ---
-
-std::vector<dmat4> history(const std::function<dmat4(double)>& pose_at, int count) {
-  std::vector<dmat4> poses;
-  for (int k = count - 1; k >= 0; --k) poses.push_back(pose_at(-k * kTrackerStep_s));
-  return poses;
-}
-
-/// Far from the origin: what a filter of absolute places would lose.
-dmat4 accelerating(double t_s) {
-  dmat4 m = glm::mat4_cast(glm::angleAxis(2 * t_s + 3 * t_s * t_s, glm::normalize(dvec3{1, 2, 3})) *
-                           glm::angleAxis(1.0, dvec3{0, 1, 0}));
-  m[3] = {1e4 + 1.5 * t_s + 4 * t_s * t_s, -3 * t_s, 7, 1};
-  return m;
-}
-
-TEST(PosePredictor, KalmanFollowsConstantAcceleration) {
-  const dmat4 truth = accelerating(0.05);
-  const dmat4 linear =
-      predicted_pose(history(accelerating, kFilterPoses), kTrackerStep_s, 0.05, PosePredictor::Linear);
-  const dmat4 kalman =
-      predicted_pose(history(accelerating, kFilterPoses), kTrackerStep_s, 0.05, PosePredictor::Kalman);
-  EXPECT_GT(glm::distance(linear[3], truth[3]),
-            0.009);  // 4 H², and the half step by which its velocity is late
-  EXPECT_LT(glm::distance(kalman[3], truth[3]), 5e-4);
-  for (int column = 0; column < 3; ++column) EXPECT_LT(glm::distance(kalman[column], truth[column]), 5e-4);
-}
-
-TEST(PosePredictor, StandsStillWithWhatStandsStill) {
-  const dmat4 pose = accelerating(0.3);
-  const std::vector<dmat4> poses(kFilterPoses, pose);
-  for (const PosePredictor predictor : {PosePredictor::Held, PosePredictor::Linear, PosePredictor::Kalman}) {
-    const dmat4 predicted = predicted_pose(poses, kTrackerStep_s, 0.1, predictor);
-    for (int column = 0; column < 4; ++column) EXPECT_EQ(predicted[column], pose[column]) << name(predictor);
-  }
-  EXPECT_EQ(predicted_pose(std::span(poses).first(1), kTrackerStep_s, 0.1, PosePredictor::Kalman), pose);
 }
 
 }  // namespace

@@ -33,10 +33,12 @@ constexpr int members_of() {
 /// Every type that is made of settings, and that the list therefore takes apart.
 constexpr int kSettings =
     members_of<Settings>() - 7  // regulator, fit, view, extents, placement, render; cells, which are content
-    + members_of<regulator::RegulatorOptions>() - 5  // thresholds, lookahead, budget, predictive, regroup
+    + members_of<regulator::RegulatorOptions>() -
+    7  // thresholds, lookahead, budget, predictive, regroup, latency, kalman
     + members_of<regulator::Thresholds>() + members_of<regulator::LookaheadOptions>() +
     members_of<regulator::BudgetOptions>() + members_of<regulator::PredictiveOptions>() +
-    members_of<regulator::RegroupOptions>() + members_of<warp::FitOptions>() + members_of<layers::View>() +
+    members_of<regulator::RegroupOptions>() + members_of<regulator::LatencyOptions>() +
+    members_of<layers::KalmanNoise>() + members_of<warp::FitOptions>() + members_of<layers::View>() +
     members_of<layers::ExtentOptions>() + members_of<layers::PlacementOptions>() +
     members_of<chunker::RenderOptions>();
 
