@@ -76,7 +76,10 @@ void add_policy(CLI::App& command, CommandLine& line) {
           std::string(word_of(kUsual.predictive.intervals, kIntervalsWords)))
       .option("--adaptive", line.adaptive,
               "policy predictive: on: shorter slices after a surprise, longer ones while there is none",
-              std::string(word_of(kUsual.predictive.adaptive, kSwitchWords)));
+              std::string(word_of(kUsual.predictive.adaptive, kSwitchWords)))
+      .option("--accumulate", line.accumulate,
+              "policies direct and predictive: a frame is the mean of M pictures over its time, 1 to 256",
+              std::to_string(Settings().accumulate));
 }
 
 void add_regrouping(CLI::App& command, CommandLine& line) {
@@ -169,9 +172,6 @@ void add_drawing(OptionGroup group, CommandLine& line) {
                std::string(word_of(chunker::RenderOptions().shading, kShadingWords)));
   group.option("--samples", line.samples, "of coverage and depth for each pixel: 1, 4 or 16",
                std::to_string(chunker::RenderOptions().samples));
-  group.option("--accumulate", line.accumulate,
-               "policies direct and predictive: a frame is the mean of M pictures over its time, 1 to 256",
-               std::to_string(Settings().accumulate));
   group.option("--resolution", line.resolution, "sprite texels per display pixel, each axis",
                shown(layers::PlacementOptions().resolution_scale));
   group.option("--compression", line.compression,

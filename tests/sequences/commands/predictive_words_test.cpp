@@ -24,7 +24,15 @@ TEST_F(PredictiveWords, FramesThatLastAreOfTwoPolicies) {
   expect_bad_input("render swarm.yaml --policy direct --accumulate 257", {"--accumulate is 257", "1 to 256"});
   expect_bad_input("render swarm.yaml --accumulate 8",
                    {"--accumulate is 8", "'threshold'", "direct or predictive"});
-  expect_bad_input("render swarm.yaml --policy predictive --lookahead 16 --accumulate many", {"--accumulate"});
+  expect_bad_input("render swarm.yaml --policy predictive --lookahead 16 --accumulate many",
+                   {"--accumulate"});
+}
+
+TEST_F(PredictiveWords, FramesThatLastCanBePlannedToo) {
+  expect_bad_input("plan swarm.yaml --accumulate 8", {"--accumulate is 8", "direct or predictive"});
+  const Outcome outcome =
+      run("plan swarm.yaml --policy predictive --lookahead 16 --accumulate 4 --progress none");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
 }
 
 TEST_F(PredictiveWords, IntervalsAndSlicesAreOfPolicyPredictive) {
