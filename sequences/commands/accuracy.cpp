@@ -24,8 +24,7 @@ int run_solver_accuracy(const AccuracyOptions& options, std::ostream& out) {
   const ProgressKind progress = choice("--progress", options.progress, kProgressWords);
   prepare_folder(options.out);
   const MeasuredSolvers solvers = measure_solvers(options.inputs, progress);
-  write_report(solvers, options.out);
-  print_report(solvers, out);
+  publish(solvers, options.out, out);
   out << "\nresults in " << options.out << "\n";
   return kSuccess;
 }

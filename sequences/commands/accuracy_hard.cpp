@@ -4,6 +4,7 @@
 #include <ostream>
 
 #include "sequences/experiments/hard/report.h"
+#include "sequences/experiments/published.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/folders.h"
 
@@ -12,8 +13,7 @@ namespace talisman::sequences {
 int run_hard_accuracy(const std::string& dir, ProgressKind progress, std::ostream& out) {
   prepare_folder(dir);
   const HardReport report = measure_hard_report(progress);
-  write_report(report, dir);
-  print_report(report, out);
+  publish(report, dir, out);
   out << "\nresults in " << dir << "\n";
   return broken_cases(report) == 0 ? kSuccess : kFailed;
 }

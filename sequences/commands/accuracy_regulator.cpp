@@ -2,6 +2,7 @@
 #include "sequences/commands/accuracy_regulator.h"
 
 #include "sequences/experiments/regulator/experiment.h"
+#include "sequences/experiments/regulator/stored_runs.h"
 
 namespace talisman::sequences {
 namespace {
@@ -41,7 +42,8 @@ RegulatorReport measure_regulator_report(const Sequence& sequence, const Experim
 }
 
 int run_regulator_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out) {
-  const ExperimentCommand<RegulatorReport> command{require_regulator_frames, measure_regulator_report};
+  const ExperimentCommand<RegulatorReport> command{require_regulator_frames, measure_regulator_report,
+                                                   store_runs};
   return run_experiment(command, options, dir, out);
 }
 

@@ -150,6 +150,7 @@ void CommandTree::add_view(const std::atomic<bool>& stop) {
       "view", "plans and pictures in the browser, live: move a slider and watch; on 127.0.0.1 alone");
   OptionGroup(*command, "Server").option("--port", view_.port, "of 127.0.0.1; 0: any that is free", "0");
   add_decision_options(*command, view_.line, "flights that are saved", "out/NAME-view");
+  add_drawing_options(*command, view_.line);
   command->callback([this, command, &stop] {
     view_.given = given_settings(*command);
     view_.controls = view_controls(*command);

@@ -16,6 +16,8 @@
 #include "sequences/commands/words.h"
 #include "sequences/experiments/comparison/report.h"
 #include "sequences/experiments/comparison/side_by_side.h"
+#include "sequences/experiments/published.h"
+#include "sequences/experiments/setting_file.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/folders.h"
 #include "sequences/files/frame_writer.h"
@@ -140,9 +142,8 @@ int run_compare(const CompareOptions& options, const std::atomic<bool>& stop, st
   if (!options.no_video) require_video_encoder();
   make_room(run_options.out);
   const ComparisonReport report = compared(options, sequence, settings, run_options, stop);
-  write_report(report, run_options.out);
+  publish(report, run_options.out, out);
   finish_report_folder(run_options.out, kMark);
-  print_report(report, out);
   if (!report.is_stopped && !options.no_video) add_video(report, run_options.out);
   out << "\nresults in " << run_options.out << "\n";
   if (!report.is_stopped) return kSuccess;

@@ -9,6 +9,7 @@
 
 #include "sequences/commands/options.h"
 #include "sequences/content/sequence.h"
+#include "sequences/experiments/published.h"
 #include "sequences/experiments/sampled_frames.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/folders.h"
@@ -52,9 +53,11 @@ struct ExperimentCommand {
   /// Throws InputError where the sequence, or an option, allows no measurement.
   void (*require)(const Sequence&, const ExperimentOptions&);
   Report (*measure)(const Sequence&, const ExperimentOptions&);
+  /// Null, or leaves more in the folder than the report, and notes it there.
+  void (*store)(const Sequence&, Report&, const std::string& dir) = nullptr;
 };
 
-/// Reads the sequence, measures, writes into the folder `dir` (write_report) and prints (print_report). What
+/// Reads the sequence, measures, and publishes into the folder `dir` (experiments/published.h). What
 /// can be refused is refused before the sequence is read or the folder made. Throws InputError and
 /// OutputError.
 template <typename Report>
@@ -64,9 +67,9 @@ int run_experiment(const ExperimentCommand<Report>& command, const ExperimentOpt
   const Sequence sequence = load_with_warnings(options.sequence);
   command.require(sequence, options);
   create_folder(dir);
-  const Report report = command.measure(sequence, options);
-  write_report(report, dir);
-  print_report(report, out);
+  Report report = command.measure(sequence, options);
+  if (command.store) command.store(sequence, report, dir);
+  publish(report, dir, out);
   out << "\nresults in " << dir << "\n";
   return kSuccess;
 }
@@ -82,8 +85,7 @@ auto run_policy_experiment(const char* policy, const Measure& measure, const Exp
   const ExperimentFrames frames = experiment_frames(run, options.quality_every);
   create_folder(dir);
   auto report = measure(sequence, run.settings, frames, run.options.progress);
-  write_report(report, dir);
-  print_report(report, out);
+  publish(report, dir, out);
   out << "\nresults in " << dir << "\n";
   return report;
 }

@@ -264,6 +264,10 @@ void add_content_options(CLI::App& command, ContentWords& words) {
       .flag("--no-stage", words.no_stage, "a bare model stands before black, on no ground");
 }
 
+void add_drawing_options(CLI::App& command, CommandLine& line) {
+  add_drawing(OptionGroup(command, "Pictures"), line);
+}
+
 void add_picture_options(CLI::App& command, CommandLine& line) { add_pictures(command, line); }
 
 void add_shard_options(CLI::App& command, CommandLine& line, bool plan_only) {

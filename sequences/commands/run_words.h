@@ -22,6 +22,8 @@ void add_content_options(CLI::App& command, ContentWords& words);
 /// Those of `explain` and `view`: what decides; and the folder of what, "the pictures", and its name.
 void add_decision_options(CLI::App& command, CommandLine& line, const std::string& folder_of,
                           const std::string& folder);
+/// Of them those that say how sprites are drawn, which `view` has, too.
+void add_drawing_options(CLI::App& command, CommandLine& line);
 /// The further options of `render`.
 void add_audit_options(CLI::App& command, CommandLine& line);
 void add_picture_options(CLI::App& command, CommandLine& line);

@@ -12,6 +12,7 @@
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/stop.h"
 #include "sequences/commands/words.h"
+#include "sequences/experiments/published.h"
 #include "sequences/experiments/tuning/report.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/folders.h"
@@ -112,9 +113,8 @@ int run_tune(const TuneOptions& options, const std::atomic<bool>& stop, std::ost
   begin_report_folder(folder, kMark, "a search for thresholds");
   const TuneReport report = tune(sequence, run.settings, {run.options.first_frame, run.options.last_frame},
                                  goal, folder, run.options.progress, stop);
-  write_report(report, folder);
+  publish(report, folder, out);
   finish_report_folder(folder, kMark);
-  print_report(report, out);
   out << "\nresults in " << folder << "\n";
   return exit_code_of(report);
 }

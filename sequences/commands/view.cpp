@@ -11,6 +11,7 @@
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/stop.h"
 #include "sequences/commands/words.h"
+#include "sequences/experiments/culling/visibility.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/freed_memory.h"
 #include "sequences/view/server.h"
@@ -56,13 +57,32 @@ std::vector<std::string> texts_of(const Words<T, N>& words) {
   return texts;
 }
 
+/// All that can be asked of a sequence, with cells or without: one that it cannot is refused in words.
+std::vector<std::string> texts_of_visibility() {
+  std::vector<std::string> texts;
+  for (const VisibilityOptions& options : visibility_triples(true)) texts.push_back(text_of(options));
+  return texts;
+}
+
 /// The words of the options that are choices.
 std::map<std::string, std::vector<std::string>> words_of_choices() {
-  return {{"policy", texts_of(kPolicyWords)},         {"predict", texts_of(kPredictionWords)},
-          {"stagger", texts_of(kSwitchWords)},        {"color-warp", texts_of(kSwitchWords)},
-          {"choice", texts_of(kChoiceRuleWords)},     {"warp", texts_of(kCurveWords)},
-          {"bound", texts_of(kBoundWords)},           {"cycles", texts_of(kCyclesWords)},
-          {"compositor", texts_of(kCompositorWords)}, {"shading", texts_of(kShadingWords)}};
+  return {{"policy", texts_of(kPolicyWords)},
+          {"predict", texts_of(kPredictionWords)},
+          {"joining", texts_of(kJoiningWords)},
+          {"motion-norm", texts_of(kMotionNormWords)},
+          {"stagger", texts_of(kSwitchWords)},
+          {"regroup", texts_of(kRegroupWords)},
+          {"regroup-prices", texts_of(kRegroupPricesWords)},
+          {"color-warp", texts_of(kSwitchWords)},
+          {"choice", texts_of(kChoiceRuleWords)},
+          {"warp", texts_of(kCurveWords)},
+          {"bound", texts_of(kBoundWords)},
+          {"cycles", texts_of(kCyclesWords)},
+          {"compositor", texts_of(kCompositorWords)},
+          {"visibility", texts_of_visibility()},
+          {"shading", texts_of(kShadingWords)},
+          {"samples", {"1", "4", "16"}},
+          {"late-chunks", texts_of(kSwitchWords)}};
 }
 
 /// Shows each option that the page may set, with its name.

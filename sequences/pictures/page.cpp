@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "layers/check.h"
+#include "sequences/files/atomic_file.h"
 #include "sequences/files/terminal_text.h"
 #include "sequences/pictures/page_assets.h"
 #include "sequences/pictures/page_text.h"
@@ -42,17 +43,43 @@ struct MarkdownWriter {
     for (const auto& row : table.rows) text += markdown_row(row);
     return text;
   }
+  std::string operator()(const Verbatim& v) const { return "```\n" + v.text + "```\n"; }
   std::string operator()(const Figure& f) const { return "![" + f.caption + "](" + f.file + ")\n"; }
 };
 
-/// The picture without its XML prolog, which may only stand at the beginning of a document.
-std::string svg_element(const std::string& file) {
+/// Empty: not in a terminal.
+struct TerminalWriter {
+  std::string operator()(const Heading& h) const { return harmless(h.text) + "\n"; }
+  std::string operator()(const Paragraph& p) const { return harmless(p.text, true) + "\n"; }
+  std::string operator()(const PageTable& table) const { return plain_text(table); }
+  std::string operator()(const Verbatim& v) const {
+    std::string text, line;
+    for (std::istringstream lines(v.text); std::getline(lines, line);) text += "    " + harmless(line) + "\n";
+    return text;
+  }
+  std::string operator()(const Figure&) const { return {}; }
+};
+
+/// Words stand on what they are about: a heading on anything, a paragraph on a table.
+bool stands_on(const Block& above, const Block& below) {
+  return std::holds_alternative<Heading>(above) ||
+         (std::holds_alternative<Paragraph>(above) && std::holds_alternative<PageTable>(below));
+}
+
+/// A picture that was written before the page.
+std::string bytes_of_figure(const std::string& file) {
   std::ifstream in(file, std::ios::binary);
   std::ostringstream content;
   content << in.rdbuf();
-  const std::string text = content.str();
+  if (!in) throw OutputError(file + ": is not there, rule: a picture");
+  return content.str();
+}
+
+/// The picture without its XML prolog, which may only stand at the beginning of a document.
+std::string svg_element(const std::string& file) {
+  const std::string text = bytes_of_figure(file);
   const std::size_t start = text.find("<svg");
-  if (!in || start == std::string::npos) throw OutputError(file + ": is not there, rule: an SVG picture");
+  if (start == std::string::npos) throw OutputError(file + ": is no picture, rule: SVG");
   return text.substr(start);
 }
 
@@ -68,7 +95,7 @@ std::string with_own_ids(std::string svg, const std::string& prefix) {
 /// Writes block after block; headings of the second level can be linked to.
 struct HtmlWriter {
   std::string dir;
-  int figures = 0, tables = 0, sections = 0;
+  int figures = 0, tables = 0, texts = 0, sections = 0;
   std::string heading{}, contents{};
 
   std::string operator()(const Heading& h) {
@@ -86,19 +113,44 @@ struct HtmlWriter {
       TALISMAN_CHECK_EQ(cells.size(), table.header.size());
       rows.push_back(all_escaped(cells));
     }
+    for (std::size_t k = 0; k < table.links.size(); ++k)
+      if (!table.links[k].empty())
+        rows[k][0] = "<a href=\"" + escaped(table.links[k]) + "\">" + rows[k][0] + "</a>";
     const std::string number = std::to_string(++tables);
     return html_table("t" + number, "", all_escaped(table.header), rows, table.text_columns,
                       "table " + number + (heading.empty() ? "" : ": " + escaped(heading)));
   }
+  std::string operator()(const Verbatim& v) {
+    return "<pre class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"lines " +
+           std::to_string(++texts) + "\">" + escaped(v.text) + "</pre>\n";
+  }
   std::string operator()(const Figure& f) {
-    const std::string prefix = "f" + std::to_string(++figures) + "-", caption = escaped(f.caption);
-    std::string svg = with_own_ids(svg_element(dir + "/" + f.file), prefix);
-    if (svg.find(" role=") == std::string::npos)
-      svg.insert(std::string("<svg").size(), " role=\"img\" aria-label=\"" + caption + "\"");
-    return "<figure>\n" + svg + "\n<figcaption>" + caption + "</figcaption>\n</figure>\n";
+    const std::string file = dir + "/" + f.file, caption = escaped(f.caption);
+    return in_figure(f.file.ends_with(".png") ? "<img alt=\"" + caption + "\" src=\"data:image/png;base64," +
+                                                    base64(bytes_of_figure(file)) + "\">"
+                                              : drawing(file, caption, f.links),
+                     caption);
   }
 
  private:
+  static std::string in_figure(const std::string& picture, const std::string& caption) {
+    return "<figure>\n" + picture + "\n<figcaption>" + caption + "</figcaption>\n</figure>\n";
+  }
+  /// A picture with links in it is a group of them to who cannot see it.
+  std::string drawing(const std::string& file, const std::string& caption,
+                      const std::vector<FigureLink>& links) {
+    std::string svg = with_own_ids(svg_element(file), "f" + std::to_string(++figures) + "-");
+    if (svg.find(" role=") == std::string::npos)
+      svg.insert(std::string("<svg").size(), std::string(" role=\"") + (links.empty() ? "img" : "group") +
+                                                 "\" aria-label=\"" + caption + "\"");
+    std::string places;
+    for (const FigureLink& link : links)
+      places += "<a href=\"" + escaped(link.href) + "\" aria-label=\"" + escaped(link.words) +
+                "\"><circle cx=\"" + fixed(link.x_px, 1) + "\" cy=\"" + fixed(link.y_px, 1) +
+                "\" r=\"8\"/><title>" + escaped(link.words) + "</title></a>\n";
+    if (const std::size_t end = svg.rfind("</svg>"); end != std::string::npos) svg.insert(end, places);
+    return svg;
+  }
   static std::vector<std::string> all_escaped(std::vector<std::string> cells) {
     for (std::string& cell : cells) cell = escaped(cell);
     return cells;
@@ -132,8 +184,21 @@ std::string plain_text(const PageTable& table) {
   return text;
 }
 
+std::string plain_text(const Page& page) {
+  std::string text;
+  const Block* above = nullptr;
+  for (const Block& block : page.blocks) {
+    const std::string words = std::visit(TerminalWriter{}, block);
+    if (words.empty()) continue;
+    text += (above && !stands_on(*above, block) ? "\n" : "") + words;
+    above = &block;
+  }
+  return page.verdict.empty() ? text : text + (above ? "\n" : "") + harmless(page.verdict, true) + "\n";
+}
+
 std::string markdown(const Page& page) {
   std::string text = "# " + page.title + "\n";
+  if (!page.verdict.empty()) text += "\n**" + page.verdict + "**\n";
   for (const Block& block : page.blocks) text += "\n" + std::visit(MarkdownWriter{}, block);
   return text;
 }
@@ -146,11 +211,18 @@ std::string html(const Page& page, const std::string& dir) {
   const std::string contents = writer.sections <= kFewSections ? ""
                                                                : "<nav aria-label=\"contents\"><ul>\n" +
                                                                      writer.contents + "</ul></nav>\n";
+  const std::string verdict =
+      page.verdict.empty() ? "" : "<p class=\"verdict\" id=\"verdict\">" + escaped(page.verdict) + "</p>\n";
   return filled(page_asset("experiment.html"), {{"title", escaped(page.title)},
                                                 {"css", std::string(page_asset("page.css"))},
+                                                {"verdict", verdict},
                                                 {"contents", contents},
                                                 {"body", body},
                                                 {"script", std::string(page_asset("theme.js"))}});
+}
+
+void write_page(const Page& page, const std::string& dir) {
+  write_text_atomically(dir + "/" + page.file, html(page, dir));
 }
 
 }  // namespace talisman::sequences

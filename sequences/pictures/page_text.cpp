@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 #include "sequences/files/number_text.h"
 
@@ -65,6 +66,20 @@ std::string url_encoded(const std::string& text) {
   return result;
 }
 
+std::string base64(const std::string& bytes) {
+  static constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    std::uint32_t bits = 0;
+    for (std::size_t k = 0; k < 3; ++k)
+      bits = (bits << 8) | (i + k < bytes.size() ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    for (std::size_t k = 0; k < 4; ++k)
+      text += i + k <= bytes.size() ? kDigits[(bits >> (18 - 6 * k)) & 63U] : '=';
+  }
+  return text;
+}
+
 std::string number_element(double value, int digits) {
   if (!std::isfinite(value)) return {};
   return "<data value=\"" + shortest_text(value) + "\">" + fixed(value, digits) + "</data>";
@@ -93,8 +108,8 @@ std::string html_table(const std::string& id, const std::string& caption,
   for (const auto& row : rows) {
     text += "<tr>";
     for (std::size_t k = 0; k < row.size(); ++k)
-      text += (k == 0 ? "<th scope=\"row\">" + row[k] + "</th>"
-                      : "<td" + std::string(class_of(k)) + ">" + row[k] + "</td>");
+      text += (k == 0 && !row[k].empty() ? "<th scope=\"row\">" + row[k] + "</th>"
+                                         : "<td" + std::string(class_of(k)) + ">" + row[k] + "</td>");
     text += "</tr>\n";
   }
   return text + "</tbody></table></div>\n";

@@ -19,6 +19,9 @@ std::string json_in_script(const nlohmann::ordered_json& json);
 /// For a link: all but letters, digits and -_.~ as %XX.
 std::string url_encoded(const std::string& text);
 
+/// RFC 4648, with padding.
+std::string base64(const std::string& bytes);
+
 /// `<data value="0.99290000000000003">0.993</data>`: what is read is rounded, what is meant is exact. Empty where it is
 /// not finite.
 std::string number_element(double value, int digits = 3);

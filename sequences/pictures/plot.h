@@ -26,6 +26,11 @@ struct PlotPoint {
 /// points one apart stand beside each other.
 enum class SeriesStyle { Line, Points, LinePoints, Steps, Cloud, Bars };
 
+/// What a point opens (plot_links.h). Neither in the picture nor in the CSV.
+struct PointLink {
+  std::string words, href;  ///< href empty: nothing
+};
+
 struct PlotSeries {
   std::string name;  ///< in the legend and in the CSV
   std::vector<PlotPoint> points;
@@ -33,6 +38,7 @@ struct PlotSeries {
   std::vector<std::string> labels =
       {};                         ///< written beside the points, one for each; empty: none. Not in the CSV
   std::vector<int> samples = {};  ///< of how many each point is, one for each; empty: not told
+  std::vector<PointLink> links = {};  ///< one for each; empty: none opens anything
   int color = -1;  ///< ≥ 0: that of the series of this index; else one of its own, while there are some
 };
 

@@ -65,6 +65,15 @@ void for_each_alpha(const PipelineState& state, const FrameReport& report, const
   }
 }
 
+/// Throws InputError where there is nothing that the picture would show.
+void require_sprites(const Settings& settings, const char* mode) {
+  using regulator::Policy;
+  const Policy policy = settings.regulator.policy;
+  if (policy == Policy::Direct || policy == Policy::Predictive)
+    throw InputError("policy is '" + std::string(regulator::name(policy)) + "', must be one with sprites: '" +
+                     mode + "' is a picture of them");
+}
+
 Image8 age_picture(const PipelineState& state, const FrameReport& report) {
   const layers::ivec2 size = report.display_px;
   Image8 picture{size.x, size.y, std::vector<std::uint8_t>(static_cast<std::size_t>(size.x) * size.y * 3)};
@@ -153,8 +162,10 @@ Image8 LivePictures::picture(PictureMode mode) {
     case PictureMode::Overlay:
       return with_outlines(report_);
     case PictureMode::Age:
+      require_sprites(pipeline_.settings, "age");
       return age_picture(*state_, report_);
     case PictureMode::Depth:
+      require_sprites(pipeline_.settings, "depth");
       return depth_picture(*state_, report_);
   }
   return {};

@@ -65,10 +65,12 @@ const {columns, rows} = view.runs[0].decisions;
 return [...Array(rows).keys()].map((r) => ["frame", "layer", "decision", "reason", "geometric_px"].map((name) => columns.get(name).values[r] ?? null));"""
 
 
-def check_plan(driver, tool, out, words):
+def check_plan(driver, tool, out, words, of_pictures=()):
+    """`of_pictures`: what plan does not take, and render does."""
     folder = out / "plan"
     shutil.rmtree(folder, ignore_errors=True)
-    subprocess.run([tool, "plan", *words, "--quiet", "--no-report", "--out", folder], check=True)
+    command = ["render", "--format", "none", *of_pictures] if of_pictures else ["plan"]
+    subprocess.run([tool, *command, *words, "--quiet", "--no-report", "--out", folder], check=True)
     lines = [json.loads(text) for text in open(folder / "decisions.jsonl")]
     expected = [[line["frame"], line["layer"], line["decision"], line["reason"], line.get("geometric_px")] for line in lines]
     shown = driver.execute_script(PLAN)
@@ -116,6 +118,48 @@ def check_pictures(driver):
     driver.find_element("id", "play").click()
     wait_for(driver, "selection.frame > 20", "the frames to play")
     driver.find_element("id", "play").click()
+
+
+# Settings that not every sequence allows: of each the plan, all pictures, and a value that is refused, with what its line begins with.
+MORE = [
+    ("fearing/blocks", {"lookahead": "8", "joining": "copy", "samples": "1", "policy": "predictive"}, ("tree-k", "3")),
+    ("hall", {"visibility": "cto,eye,eye", "shading": "flat"}, ("policy", "hold")),
+    ("tour/lookahead", {"regroup": "amortised", "regroup-dwell": "3", "compression": "85", "resolution": "0.5"}, ("visibility", "cto,eye,eye"))]
+
+
+def check_more_settings(driver, tool, out):
+    size = ["--size", "160x120"]
+    of_pictures = ("shading", "samples", "resolution", "compression", "late-chunks")
+    for sequence, settings, (option, wrong) in MORE:
+        with serving(tool, sequence, *size, "--out", out / "more") as (url, _):
+            open_view(driver, url)
+            for name, value in settings.items():
+                set_value(driver, name, value)
+            wait_for(driver, "view.runs[0].complete && !document.querySelector('.error:not(:empty)')", f"the plan of {sequence}")
+            words = [f"--{name}={value}" for name, value in settings.items()]
+            planned = [word for word in words if word[2:].split("=")[0] not in of_pictures]
+            pictured = [word for word in words if word not in planned]
+            check_plan(driver, tool, out, [sequence, *size, *planned], pictured)
+            for mode in driver.execute_script("return view.about.modes"):
+                Select(driver.find_element("id", "mode")).select_by_value(mode)
+                wait_for(driver, f"document.getElementById('picture').alt.endsWith(', {mode}') && document.getElementById('picture').naturalWidth > 0 || "
+                                 f"document.getElementById('error-policy').textContent.includes('{mode}')", f"{sequence}, {mode}")
+                refused = driver.execute_script("return document.getElementById('error-policy').textContent")
+                assert (refused != "") == (mode in ("age", "depth") and sequence != "tour/lookahead"), (sequence, mode, refused)
+            Select(driver.find_element("id", "mode")).select_by_value("shown")
+            wait_for(driver, "document.getElementById('picture').alt.endsWith(', shown') && !document.querySelector('.error:not(:empty)')", "the picture again")
+            driver.execute_script("selection.set({frame: 5, layer: view.runs[0].layers[0]})")
+            wait_for(driver, "document.body.dataset.details === '5' && document.querySelector('#properties .why').textContent.length > 3", f"{sequence}: a decision")
+            before = driver.execute_script(PLAN)
+            set_value(driver, option, wrong)
+            line = driver.execute_script("return [...document.querySelectorAll('.error')].map((e) => e.textContent).join('')")
+            told = subprocess.run([tool, "plan", sequence, *size, *[w for w in planned if not w.startswith(f"--{option}=")], f"--{option}={wrong}", "--quiet", "--out", out / "none"],
+                                  capture_output=True, text=True)
+            assert told.returncode == 2 and told.stderr == f"error: {line}\n", (line, told.stderr)
+            assert driver.execute_script("return document.querySelector('.error:not(:empty)').id") != "error-general", f"'{line}' stands beside no control"
+            assert driver.execute_script(PLAN) == before, "an invalid value changed the plan"
+            driver.save_screenshot(str(out / f"{sequence.replace('/', '-')}.png"))
+            check_console(driver)
 
 
 def drag(driver, moves):
@@ -181,6 +225,7 @@ def main():
             check_camera(driver, tool, out)
             check_widths(driver)
             check_console(driver)
+        check_more_settings(driver, tool, out)
         check_fault(driver, tool, out)
     finally:
         driver.quit()

@@ -40,7 +40,7 @@ std::vector<PlanShape> small_shapes() {
   std::vector<PlanShape> shapes;
   for (int frames = 1; frames <= 12; ++frames)
     for (int children = 2; children <= 12; ++children)
-      if (first_defect({frames, children}).empty()) shapes.push_back({frames, children});
+      if (first_defect(PlanShape{frames, children}).empty()) shapes.push_back({frames, children});
   return shapes;
 }
 
@@ -151,12 +151,14 @@ TEST(PlanTree, ShapesAndTheirDefects) {
   EXPECT_EQ((PlanShape{64, 4}.levels()), 4);
   EXPECT_EQ((PlanShape{7, 7}.levels()), 2);
   EXPECT_EQ((PlanShape{64, 4}.interval(2)), 4);
-  EXPECT_EQ(first_defect({12, 2}), "lookahead is 12, must be a power of tree_k 2 for the policy predictive");
-  EXPECT_EQ(first_defect({8, 1}), "tree_k is 1, must be at least 2");
-  EXPECT_EQ(first_defect({8192, 2}), "lookahead is 8192, must be 1 to 4096 for the policy predictive");
-  EXPECT_NE(first_defect({0, 2}), "");
-  EXPECT_NE(first_defect({-8, 2}), "");
-  EXPECT_EQ(first_defect({1, 5}), "");  // N = 1 = k^0: every frame
+  EXPECT_EQ(first_defect(PlanShape{12, 2}),
+            "lookahead is 12, must be a power of tree_k 2 for the policy predictive");
+  EXPECT_EQ(first_defect(PlanShape{8, 1}), "tree_k is 1, must be at least 2");
+  EXPECT_EQ(first_defect(PlanShape{8192, 2}),
+            "lookahead is 8192, must be 1 to 4096 for the policy predictive");
+  EXPECT_NE(first_defect(PlanShape{0, 2}), "");
+  EXPECT_NE(first_defect(PlanShape{-8, 2}), "");
+  EXPECT_EQ(first_defect(PlanShape{1, 5}), "");  // N = 1 = k^0: every frame
   EXPECT_EQ(slice_within(100, 3), 81);
   EXPECT_EQ(slice_within(1, 3), 1);
 }

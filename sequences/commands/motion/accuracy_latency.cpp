@@ -36,16 +36,14 @@ int run_latency_accuracy(const ExperimentOptions& options, const std::string& di
                      " s, rule: some are, since so much of the past is looked at");
   create_folder(dir);
   const LatencyCurve curve = measure_latency(sequence, run.settings, frames, warp_ms);
-  write_report(curve, dir);
-  print_report(curve, out);
+  publish(curve, dir, out);
   const int every = options.quality_every > 0
                         ? options.quality_every
                         : std::max(1, (frames.last - frames.first + kLatencySamples) / kLatencySamples);
   const DisplayedExperiment displayed = measure_displayed(
       sequence, run.settings, {frames.first, frames.last, every}, warp_ms, run.options.progress);
-  write_report(displayed, dir);
   out << "\n";
-  print_report(displayed, out);
+  publish(displayed, dir, out);
   out << "\nresults in " << dir << "\n";
   return kSuccess;
 }

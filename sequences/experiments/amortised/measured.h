@@ -15,13 +15,13 @@
 /// those that sampled_frames.h chooses.
 
 #include <cstdint>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "sequences/content/sequence.h"
 #include "sequences/experiments/regulator/measured.h"
 #include "sequences/files/progress.h"
+#include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
 
@@ -51,9 +51,9 @@ struct AmortisedExperiment {
 AmortisedExperiment measure_amortised(const Sequence& sequence, const Settings& settings,
                                       const ExperimentFrames& frames, ProgressKind progress);
 
-/// amortised.csv, amortised.json, and a plot.
+/// amortised.csv, amortised.json, and a plot; what is printed and amortised.html (published.h).
 void write_report(const AmortisedExperiment& experiment, const std::string& dir);
-void print_report(const AmortisedExperiment& experiment, std::ostream& out);
+Page page_of(const AmortisedExperiment& experiment);
 
 /// Of what a frame renders and composites, as planned, ms on talisman-1996. Direct: all in view in one pass over the display.
 struct PlannedCost {

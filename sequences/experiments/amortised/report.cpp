@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <ostream>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/experiments/amortised/measured.h"
 #include "sequences/experiments/named_values.h"
+#include "sequences/experiments/published.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page.h"
@@ -75,16 +75,8 @@ Plot cost_plot(const AmortisedExperiment& experiment) {
   return plot;
 }
 
-}  // namespace
-
-void write_report(const AmortisedExperiment& experiment, const std::string& dir) {
-  write_text_atomically(dir + "/amortised.csv", csv_of(experiment));
-  write_text_atomically(dir + "/amortised.json", json_of(experiment));
-  write_plot(dir, "amortised", cost_plot(experiment));
-}
-
-void print_report(const AmortisedExperiment& experiment, std::ostream& out) {
-  PageTable table{{"layers", "", "shown", "merges", "splits", "above ceiling", "polygons %", "render ms",
+PageTable amortised_table(const AmortisedExperiment& experiment) {
+  PageTable table{{"layers", "of", "shown", "merges", "splits", "above ceiling", "polygons %", "render ms",
                    "+ composite", "largest px", "PSNR dB", "FLIP", "pop", "plan", "draw", "composite ms"},
                   {},
                   1};
@@ -97,14 +89,45 @@ void print_report(const AmortisedExperiment& experiment, std::ostream& out) {
                           fixed(r.measured.quality.flip, 4), fixed(r.measured.popping.rms, 2),
                           fixed(r.measured.plan.mean, 2), fixed(r.measured.render.mean, 2),
                           fixed(r.measured.composite.mean, 2)});
-  out << experiment.sequence << ": frames " << experiment.frames.first << "-" << experiment.frames.last
-      << ", one in " << experiment.frames.every << " drawn and compared with direct, "
-      << experiment.display_px.x << "x" << experiment.display_px.y
-      << " px. render, composite: modelled, mean of a frame; plan, draw, composite ms: this machine\n"
-      << plain_text(table);
+  return table;
+}
+
+/// The cheapest that is no floor, beside the author's own.
+std::string verdict_on(const AmortisedExperiment& experiment) {
+  const AmortisedResult *cheapest = nullptr, *own = nullptr;
+  for (const AmortisedResult& r : experiment.results) {
+    if (r.name == "author's layers") own = &r;
+    if (r.grouping != "best" && (!cheapest || r.planned_ms() < cheapest->planned_ms())) cheapest = &r;
+  }
+  if (!cheapest || !own) return {};
+  return "Cheapest: " + cheapest->name + ", " + fixed(cheapest->planned_ms(), 3) +
+         " ms a frame as planned, with an error of at most " + fixed(cheapest->measured.max_geometric_px, 3) +
+         " px; the author's layers take " + fixed(own->planned_ms(), 3) + " ms.";
+}
+
+}  // namespace
+
+void write_report(const AmortisedExperiment& experiment, const std::string& dir) {
+  write_text_atomically(dir + "/amortised.csv", csv_of(experiment));
+  write_text_atomically(dir + "/amortised.json", json_of(experiment));
+  write_plot(dir, "amortised", cost_plot(experiment));
+}
+
+Page page_of(const AmortisedExperiment& experiment) {
+  Page page{"Who shares a sprite: " + experiment.sequence, {}, verdict_on(experiment), "amortised.html"};
+  page.blocks = {
+      Paragraph{measured_on(experiment.sequence, experiment.frames, experiment.display_px) +
+                "; one frame in " + std::to_string(experiment.frames.every) +
+                " drawn and compared with direct. render, composite: modelled, mean of a frame; plan, draw, "
+                "composite ms: this machine"},
+      amortised_table(experiment)};
   if (experiment.groupings_tried > 0)
-    out << "best of all groupings: of " << experiment.groupings_tried << " that were planned\n";
-  if (!experiment.left_out.empty()) out << "left out: " << experiment.left_out << "\n";
+    page.blocks.push_back(Paragraph{"best of all groupings: of " +
+                                    std::to_string(experiment.groupings_tried) + " that were planned"});
+  if (!experiment.left_out.empty()) page.blocks.push_back(Paragraph{"left out: " + experiment.left_out});
+  page.blocks.push_back(
+      Figure{"amortised.svg", "What a frame costs, modelled, against the sprites that it shows."});
+  return page;
 }
 
 }  // namespace talisman::sequences

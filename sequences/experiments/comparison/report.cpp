@@ -2,14 +2,14 @@
 #include "sequences/experiments/comparison/report.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <ostream>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/experiments/large_plot.h"
 #include "sequences/experiments/named_values.h"
+#include "sequences/experiments/published.h"
+#include "sequences/experiments/setting_file.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/folders.h"
 #include "sequences/pictures/page.h"
@@ -87,16 +87,26 @@ void write_runs(const ComparisonReport& report, const std::string& dir) {
   }
 }
 
-}  // namespace
-
-std::string file_name_of(const std::string& setting) {
-  std::string name;
-  for (const char c : setting) {
-    const bool is_plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '.';
-    if (is_plain || (!name.empty() && name.back() != '-')) name += is_plain ? c : '-';
+/// The cheapest, and the nearest to the truth.
+std::string verdict_on(const ComparisonReport& report) {
+  const Compared *cheapest = nullptr, *nearest = nullptr;
+  for (const Compared& c : report.compared) {
+    if (&c == &report.compared.front()) continue;
+    if (!cheapest || c.result.modelled_ms < cheapest->result.modelled_ms) cheapest = &c;
+    if (!nearest || c.quality.mean.flip < nearest->quality.mean.flip) nearest = &c;
   }
-  return name;
+  if (!cheapest) return {};
+  const auto words = [&](const Compared& c) {
+    return c.name + " (" + fixed(c.result.modelled_ms, 2) + " ms a frame, FLIP " +
+           fixed(c.quality.mean.flip, 5) + ")";
+  };
+  const std::string both =
+      cheapest == nearest ? "Cheapest and nearest to the truth: " + words(*cheapest)
+                          : "Cheapest: " + words(*cheapest) + "; nearest to the truth: " + words(*nearest);
+  return both + "; reference takes " + fixed(report.compared.front().result.modelled_ms, 2) + " ms.";
 }
+
+}  // namespace
 
 std::string compare_csv(const ComparisonReport& report) {
   std::string csv = "setting" + csv_names(kCompared) + "\n";
@@ -163,12 +173,16 @@ void write_report(const ComparisonReport& report, const std::string& dir) {
   write_plot(dir, "compare-frames", frames_plot(report), kLargePlot);
 }
 
-void print_report(const ComparisonReport& report, std::ostream& out) {
-  if (report.compared.empty()) return;
-  out << report.sequence << ": frames " << report.frames.first << "-" << report.frames.last << " of "
-      << report.display_px.x << "x" << report.display_px.y
-      << " px; polygons and pixels in % of reference, times per frame, errors against reference\n\n"
-      << plain_text(comparison_table(report));
+Page page_of(const ComparisonReport& report) {
+  if (report.compared.empty()) return {};
+  return {"Settings side by side: " + report.sequence,
+          {Paragraph{measured_on(report.sequence, report.frames, report.display_px) +
+                     "; polygons and pixels in % of reference, times per frame, errors against reference"},
+           comparison_table(report),
+           Figure{"compare-cost.svg", "Picture error against modelled time of a frame."},
+           Figure{"compare-frames.svg", "Picture error over time."}},
+          verdict_on(report),
+          "compare.html"};
 }
 
 }  // namespace talisman::sequences

@@ -15,13 +15,13 @@
 /// finds is counted (`missed`). Times are medians over the frames, on one thread.
 
 #include <cstdint>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "sequences/content/sequence.h"
 #include "sequences/experiments/sampled_frames.h"
 #include "sequences/files/progress.h"
+#include "sequences/pictures/page.h"
 #include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
@@ -51,8 +51,8 @@ CullingExperiment measure_culling(const Sequence& sequence, const Settings& sett
 /// The structure with the least time per frame, of each workload, by the place of its first result.
 std::vector<const CullingResult*> fastest(const CullingExperiment& experiment);
 
-/// culling.csv, culling.json, and plots of time over parts and over the share that moves.
+/// culling.csv, culling.json, and plots of time over parts and over the share that moves; what is printed and culling.html (published.h).
 void write_report(const CullingExperiment& experiment, const std::string& dir);
-void print_report(const CullingExperiment& experiment, std::ostream& out);
+Page page_of(const CullingExperiment& experiment);
 
 }  // namespace talisman::sequences

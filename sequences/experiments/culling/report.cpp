@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <map>
-#include <ostream>
 
 #include <nlohmann/json.hpp>
 
@@ -69,6 +68,34 @@ Plot plot_of(const CullingExperiment& experiment, const std::string& title, cons
   return plot;
 }
 
+PageTable culling_table(const CullingExperiment& experiment) {
+  const std::vector<const CullingResult*> best = fastest(experiment);
+  PageTable table{{"parts", "moving %", "structure", "build us", "update us", "query us", "found", "nodes",
+                   "tests", "spared", "missed", "best"},
+                  {},
+                  1};
+  for (const CullingResult& r : experiment.results)
+    table.rows.push_back({std::to_string(r.parts), fixed(100 * r.moving_share, 1), r.structure,
+                          fixed(r.build_us, 0), fixed(r.update_us, 1), fixed(r.query_us, 1),
+                          fixed(r.found, 1), fixed(r.nodes, 1), fixed(r.tests, 1), fixed(r.spared, 1),
+                          std::to_string(r.missed),
+                          std::find(best.begin(), best.end(), &r) != best.end() ? "fastest" : ""});
+  return table;
+}
+
+/// How often each is the fastest, and whether any missed a part.
+std::string verdict_on(const CullingExperiment& experiment) {
+  std::map<std::string, int> wins;
+  for (const CullingResult* best : fastest(experiment)) ++wins[best->structure];
+  std::string text = "Fastest:";
+  for (const auto& [structure, count] : wins)
+    text += (text.back() == ':' ? " " : ", ") + structure + " in " + std::to_string(count);
+  std::int64_t missed = 0;
+  for (const CullingResult& r : experiment.results) missed += r.missed;
+  return text + " of " + std::to_string(fastest(experiment).size()) + " workloads; " +
+         (missed == 0 ? std::string("none misses a part.") : std::to_string(missed) + " parts are missed.");
+}
+
 }  // namespace
 
 void write_report(const CullingExperiment& experiment, const std::string& dir) {
@@ -86,21 +113,15 @@ void write_report(const CullingExperiment& experiment, const std::string& dir) {
                  [](const CullingResult& r) { return 100 * r.moving_share; }));
 }
 
-void print_report(const CullingExperiment& experiment, std::ostream& out) {
-  const std::vector<const CullingResult*> best = fastest(experiment);
-  PageTable table{{"parts", "moving %", "structure", "build us", "update us", "query us", "found", "nodes",
-                   "tests", "spared", "missed", ""},
-                  {},
-                  1};
-  for (const CullingResult& r : experiment.results)
-    table.rows.push_back({std::to_string(r.parts), fixed(100 * r.moving_share, 1), r.structure,
-                          fixed(r.build_us, 0), fixed(r.update_us, 1), fixed(r.query_us, 1),
-                          fixed(r.found, 1), fixed(r.nodes, 1), fixed(r.tests, 1), fixed(r.spared, 1),
-                          std::to_string(r.missed),
-                          std::find(best.begin(), best.end(), &r) != best.end() ? "fastest" : ""});
-  out << experiment.sequence << ": " << experiment.frames << " frames, " << experiment.display_px.x << "x"
-      << experiment.display_px.y << " px; the sequence's own parts, and copies of them\n"
-      << plain_text(table);
+Page page_of(const CullingExperiment& experiment) {
+  Page page{"What finds what is in view: " + experiment.sequence, {}, verdict_on(experiment), "culling.html"};
+  page.blocks = {Paragraph{formatted("%s: %d frames, %dx%d px; the sequence's own parts, and copies of them",
+                                     experiment.sequence.c_str(), experiment.frames, experiment.display_px.x,
+                                     experiment.display_px.y)},
+                 culling_table(experiment),
+                 Figure{"culling-parts.svg", "Time of a frame over the number of parts, of which 1 % move."},
+                 Figure{"culling-moving.svg", "Time of a frame over the share that moves, of 10,000 parts."}};
+  return page;
 }
 
 }  // namespace talisman::sequences

@@ -10,13 +10,13 @@
 /// one thread.
 
 #include <cstdint>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "sequences/content/sequence.h"
 #include "sequences/experiments/sampled_frames.h"
 #include "sequences/files/progress.h"
+#include "sequences/pictures/page.h"
 #include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
@@ -46,8 +46,9 @@ struct VisibilityExperiment {
 VisibilityExperiment measure_visibility(const Sequence& sequence, const Settings& settings,
                                         const ExperimentFrames& frames, ProgressKind progress);
 
-/// visibility.csv, visibility.json, and a plot of decision time against what is left.
+/// visibility.csv, visibility.json, and a plot of decision time against what is left; what is printed and visibility.html
+/// (published.h).
 void write_report(const VisibilityExperiment& experiment, const std::string& dir);
-void print_report(const VisibilityExperiment& experiment, std::ostream& out);
+Page page_of(const VisibilityExperiment& experiment);
 
 }  // namespace talisman::sequences

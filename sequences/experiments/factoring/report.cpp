@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/experiments/factoring/report.h"
 
-#include <ostream>
-
 #include <nlohmann/json.hpp>
 
 #include "sequences/experiments/factoring/pictures.h"
 #include "sequences/experiments/named_values.h"
+#include "sequences/experiments/published.h"
 #include "sequences/experiments/statistics.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
@@ -139,16 +138,16 @@ PageTable cost_table(const FactoringReport& report) {
   return table;
 }
 
-/// "factored: 61.2 % of the unfactored polygons, …".
-std::string savings(const FactoringReport& report) {
+/// What it draws of the unfactored polygons, pixels, …
+std::string verdict_on(const FactoringReport& report) {
   const SettingResult &a = report.result.factored, &b = report.result.unfactored;
   const auto share = [](double part, double whole) {
-    return whole > 0 ? percent_with(part / whole, 1) : "-";
+    return (whole > 0 ? percent_with(part / whole, 1) : "-") + " %";
   };
-  return "factored, % of unfactored: polygons " + share(double(a.polygons), double(b.polygons)) +
-         ", pixels " + share(double(a.pixels), double(b.pixels)) + ", chunks " +
-         share(double(a.chunks), double(b.chunks)) + ", modelled " + share(a.modelled_ms, b.modelled_ms) +
-         ", measured " + share(a.frame_ms(), b.frame_ms()) + "\n";
+  return "Factored, of unfactored: polygons " + share(double(a.polygons), double(b.polygons)) + ", pixels " +
+         share(double(a.pixels), double(b.pixels)) + ", chunks " + share(double(a.chunks), double(b.chunks)) +
+         ", modelled " + share(a.modelled_ms, b.modelled_ms) + ", measured " +
+         share(a.frame_ms(), b.frame_ms()) + ".";
 }
 
 }  // namespace
@@ -209,27 +208,37 @@ void write_report(const FactoringReport& report, const std::string& dir) {
   write_text_atomically(dir + "/factoring.json", json_of(report));
 }
 
-void print_report(const FactoringReport& report, std::ostream& out) {
-  out << report.sequence << ": frames " << report.frames.first << "-" << report.frames.last << " planned, "
-      << report.result.sampled.size() << " of them drawn and compared (one in " << report.frames.every
-      << "), " << report.display_px.x << "x" << report.display_px.y << " px, policy " << report.policy
-      << ", warp " << report.warp
-      << "\n\nover alone: error of the frame, RMS / largest, % of white in linear light; predicted: by the "
-         "formula and what it does not know;"
-         "\nunexplained: measured - predicted; elsewhere: measured where nothing is predicted; bound: of "
-         "rounding (8-bit sprites, 16-bit compositor);"
-         "\nof it: the largest share of its own bound that an unexplained error reaches; beyond: how many "
-         "are larger\n"
-      << plain_text(prediction_table(report))
-      << "\nwhat is lost, against the unfactored truth: code values of the sRGB frame; each + adds to the "
-         "line above\n"
-      << plain_text(loss_table(report));
+Page page_of(const FactoringReport& report) {
+  Page page{"Shading in sprites of its own: " + report.sequence, {}, verdict_on(report), "factoring.html"};
+  page.blocks = {
+      Paragraph{measured_on(report.sequence, report.frames, report.display_px) + ", policy " + report.policy +
+                ", warp " + report.warp + "; " + std::to_string(report.result.sampled.size()) +
+                " frames drawn and compared (one in " + std::to_string(report.frames.every) + ")"},
+      Heading{2, "Over alone: what is predicted, and what is measured"},
+      Paragraph{
+          "error of the frame, RMS / largest, % of white in linear light; predicted: by the formula and what "
+          "it does "
+          "not know;\nunexplained: measured - predicted; elsewhere: measured where nothing is predicted; "
+          "bound: of "
+          "rounding (8-bit sprites, 16-bit compositor);\nof it: the largest share of its own bound that an "
+          "unexplained error reaches; beyond: how many are larger"},
+      prediction_table(report),
+      Figure{"factoring.png", "The frame with the largest error, both ways, and maps of the error."},
+      Figure{"factoring-prediction.svg", "Measured error against predicted error."},
+      Heading{2, "What is lost"},
+      Paragraph{"against the unfactored truth: code values of the sRGB frame; each + adds to the line above"},
+      loss_table(report)};
   if (report.result.blends_over_time)
-    out << "textures are blended over time, which the unfactored sequence cannot: its truth has the blends "
-           "of the materials\n";
-  out << "\nwhat factoring saves: the sequence under its own policy; ms per frame, mean, measured on this "
-         "machine\n"
-      << plain_text(cost_table(report)) << savings(report);
+    page.blocks.push_back(
+        Paragraph{"textures are blended over time, which the unfactored sequence cannot: its truth "
+                  "has the blends of the materials"});
+  const std::vector<Block> costs = {
+      Figure{"factoring-losses.svg", "The loss of every picture, frame by frame."},
+      Heading{2, "What factoring saves"},
+      Paragraph{"the sequence under its own policy; ms per frame, mean, measured on this machine"},
+      cost_table(report)};
+  page.blocks.insert(page.blocks.end(), costs.begin(), costs.end());
+  return page;
 }
 
 }  // namespace talisman::sequences

@@ -12,14 +12,15 @@
 ///   as factoring-measured.png, factoring-predicted.png, factoring-difference.png
 /// - factoring-prediction.svg: measured against predicted error
 /// - factoring-losses.svg: the loss of every picture, frame by frame
+/// - factoring.html: all of it as a page
 ///
 /// Beside each SVG lies a CSV with the points that it shows. Columns named `wall_…` are measured times; all
 /// else is the same in every run.
 
-#include <iosfwd>
 #include <string>
 
 #include "sequences/experiments/factoring/measured.h"
+#include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
 
@@ -31,6 +32,6 @@ std::string json_of(const FactoringReport& report);
 /// Writes all files into the folder, which is there. Throws OutputError.
 void write_report(const FactoringReport& report, const std::string& dir);
 
-void print_report(const FactoringReport& report, std::ostream& out);
+Page page_of(const FactoringReport& report);
 
 }  // namespace talisman::sequences

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <ostream>
 #include <utility>
 
 #include "sequences/experiments/large_plot.h"
@@ -92,6 +91,29 @@ std::string csv_of_cases(const HardReport& report) {
   return csv;
 }
 
+std::string broken_lines(const HardReport& report) {
+  std::string lines;
+  for (const MeasuredHardCase& m : report.cases) {
+    if (m.status != HardStatus::Broken) continue;
+    lines += std::string(lines.empty() ? "" : "\n") + "broken: " + std::string(name(m.hard.stage)) + ", " +
+             std::string(m.hard.name) + ": " + short_number(m.outcome.error) + " " +
+             std::string(m.hard.rule.unit);
+    if (m.outcome.refused != m.hard.rule.refused) lines += m.outcome.refused ? ", refused" : ", not refused";
+    lines += ", rule: " + rule_text(m.hard.rule) + (m.hard.rule.refused ? " and a refusal" : "");
+  }
+  return lines;
+}
+
+std::string verdict_on(const HardReport& report) {
+  double least = 1, most = 1;
+  for (const MeasuredHardCase& m : report.cases)
+    least = std::min(least, m.hard.extreme), most = std::max(most, m.hard.extreme);
+  return std::to_string(report.cases.size()) + " cases, extremes " + short_number(least) + " ... " +
+         short_number(most) + ": " + std::to_string(count_status(report, HardStatus::Holds)) + " hold, " +
+         std::to_string(count_status(report, HardStatus::Refused)) + " are refused as they should, " +
+         std::to_string(count_status(report, HardStatus::Broken)) + " are broken";
+}
+
 }  // namespace
 
 HardReport measure_hard_report(ProgressKind progress_kind) {
@@ -118,23 +140,20 @@ void write_report(const HardReport& report, const std::string& dir) {
              kLargePlot);
 }
 
-void print_report(const HardReport& report, std::ostream& out) {
-  double least = 1, most = 1;
-  for (const MeasuredHardCase& m : report.cases)
-    least = std::min(least, m.hard.extreme), most = std::max(most, m.hard.extreme);
-  for (const HardStage stage : kAllHardStages)
-    out << name(stage) << "\n" << plain_text(table_of_stage(report, stage)) << "\n";
-  out << report.cases.size() << " cases, extremes " << short_number(least) << " ... " << short_number(most)
-      << ": " << count_status(report, HardStatus::Holds) << " hold, "
-      << count_status(report, HardStatus::Refused) << " are refused as they should, " << broken_cases(report)
-      << " are broken\n";
-  for (const MeasuredHardCase& m : report.cases)
-    if (m.status == HardStatus::Broken)
-      out << "broken: " << name(m.hard.stage) << ", " << m.hard.name << ": " << short_number(m.outcome.error)
-          << " " << m.hard.rule.unit
-          << (m.outcome.refused != m.hard.rule.refused ? m.outcome.refused ? ", refused" : ", not refused"
-                                                       : "")
-          << ", rule: " << rule_text(m.hard.rule) << (m.hard.rule.refused ? " and a refusal" : "") << "\n";
+Page page_of(const HardReport& report) {
+  Page page{"Hard cases of every stage", {}, verdict_on(report), "hard.html"};
+  for (const HardStage stage : kAllHardStages) {
+    page.blocks.push_back(Heading{2, std::string(name(stage))});
+    page.blocks.push_back(table_of_stage(report, stage));
+  }
+  if (const std::string broken = broken_lines(report); !broken.empty())
+    page.blocks.push_back(Paragraph{broken});
+  page.blocks.push_back(
+      Figure{"hard-cases.svg", "The error of each case as a share of what its rule allows."});
+  page.blocks.push_back(
+      Figure{"hard-fit.svg", "An affine fit in single and in double precision, ever farther away."});
+  page.blocks.push_back(Figure{"hard-projection.svg", "The same for the projection of a box."});
+  return page;
 }
 
 }  // namespace talisman::sequences

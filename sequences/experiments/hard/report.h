@@ -9,13 +9,13 @@
 ///
 /// The same bytes in every run. Each plot has its points beside it as CSV.
 
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "sequences/experiments/hard/hard_case.h"
 #include "sequences/experiments/hard/number_width.h"
 #include "sequences/files/progress.h"
+#include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
 
@@ -33,7 +33,7 @@ int broken_cases(const HardReport& report);
 /// Writes all files into the folder, which is there. Throws OutputError.
 void write_report(const HardReport& report, const std::string& dir);
 
-/// A table per stage, and at the end how many hold.
-void print_report(const HardReport& report, std::ostream& out);
+/// A table per stage, and how many hold (published.h).
+Page page_of(const HardReport& report);
 
 }  // namespace talisman::sequences

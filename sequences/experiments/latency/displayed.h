@@ -29,7 +29,6 @@
 ///
 /// Points of the grid are judged on the frames of which pictures are drawn, and have no judder. A whole frame knows of no motion but the camera's: what moves, and what hangs on the head, is carried as the world is.
 
-#include <iosfwd>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +38,7 @@
 #include "sequences/experiments/latency/reprojection.h"
 #include "sequences/experiments/sampled_frames.h"
 #include "sequences/files/progress.h"
+#include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
 
@@ -91,9 +91,10 @@ struct DisplayedExperiment {
 DisplayedExperiment measure_displayed(const Sequence& sequence, const Settings& settings,
                                       const ExperimentFrames& frames, double warp_ms, ProgressKind progress);
 
-/// displayed.csv (a row for each way), displayed-layers.csv (for each layer of each), displayed-plot.svg (FLIP over polygons).
+/// displayed.csv (a row for each way), displayed-layers.csv (for each layer of each), displayed-plot.svg (FLIP over polygons);
+/// what is printed and displayed.html (published.h).
 void write_report(const DisplayedExperiment& experiment, const std::string& dir);
-void print_report(const DisplayedExperiment& experiment, std::ostream& out);
+Page page_of(const DisplayedExperiment& experiment);
 
 /// Where layers win and where they lose, in words.
 std::vector<std::string> verdict_of(const DisplayedExperiment& experiment);

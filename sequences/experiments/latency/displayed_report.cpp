@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <ostream>
 
 #include "sequences/experiments/latency/displayed.h"
+#include "sequences/experiments/published.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page.h"
@@ -161,14 +161,19 @@ void write_report(const DisplayedExperiment& experiment, const std::string& dir)
   write_plot(dir, "displayed-plot", flip_plot(experiment));
 }
 
-void print_report(const DisplayedExperiment& experiment, std::ostream& out) {
-  out << "the pose that decisions know, against the true one:\n"
-      << plain_text(pose_table(experiment))
-      << "\nwhat is shown, against direct at the true pose; pictures of " << experiment.drawn
-      << " frames, points of all:\n"
-      << plain_text(table_of(experiment))
-      << "\nlayers beside the best whole frames (FLIP, where each layer is seen):\n";
-  for (const std::string& line : verdict_of(experiment)) out << line << "\n";
+Page page_of(const DisplayedExperiment& experiment) {
+  Page page{"Late displays: " + experiment.sequence, {}, "", "displayed.html"};
+  page.blocks = {Paragraph{measured_on(experiment.sequence, experiment.frames, experiment.display_px)},
+                 Heading{2, "The pose that decisions know, against the true one"},
+                 pose_table(experiment),
+                 Heading{2, "What is shown, against direct at the true pose"},
+                 Paragraph{formatted("Pictures of %d frames, points of all.", experiment.drawn)},
+                 table_of(experiment),
+                 Heading{2, "Layers beside the best whole frames (FLIP, where each layer is seen)"}};
+  std::string verdict;
+  for (const std::string& line : verdict_of(experiment)) verdict += line + "\n";
+  add(page, {Verbatim{verdict}, Figure{"displayed-plot.svg", "FLIP over the polygons of a frame."}});
+  return page;
 }
 
 }  // namespace talisman::sequences

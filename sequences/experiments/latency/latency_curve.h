@@ -27,6 +27,7 @@
 #include <vector>
 
 #include "sequences/content/sequence.h"
+#include "sequences/pictures/page.h"
 #include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/pipeline.h"
 #include "sequences/results/planned.h"
@@ -69,8 +70,9 @@ struct LatencyCurve {
 LatencyCurve measure_latency(const Sequence& sequence, const Settings& settings, const FrameRange& frames,
                              double warp_ms);
 
-/// Writes latency.csv, latency.svg (p95 of the layers' error over RENDER) into the folder.
+/// Writes latency.csv, latency-plot.svg (p95 of the layers' error over RENDER) into the folder; what is printed and
+/// latency.html (published.h).
 void write_report(const LatencyCurve& curve, const std::string& dir);
-void print_report(const LatencyCurve& curve, std::ostream& out);
+Page page_of(const LatencyCurve& curve);
 
 }  // namespace talisman::sequences

@@ -12,13 +12,13 @@
 /// picture that was due in a frame between is drawn with the predecessor, which is not timed.
 
 #include <cstdint>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "sequences/content/sequence.h"
 #include "sequences/experiments/sampled_frames.h"
 #include "sequences/files/progress.h"
+#include "sequences/pictures/page.h"
 #include "sequences/pictures/quality.h"
 #include "sequences/pipeline/pipeline.h"
 
@@ -66,8 +66,9 @@ struct PredictiveExperiment {
 PredictiveExperiment measure_predictive(const Sequence& sequence, const Settings& settings,
                                         const ExperimentFrames& frames, ProgressKind progress);
 
-/// predictive.csv, predictive.json, and plots of what each knob costs and loses.
+/// predictive.csv, predictive.json, and plots of what each knob costs and loses; what is printed and predictive.html
+/// (published.h).
 void write_report(const PredictiveExperiment& experiment, const std::string& dir);
-void print_report(const PredictiveExperiment& experiment, std::ostream& out);
+Page page_of(const PredictiveExperiment& experiment);
 
 }  // namespace talisman::sequences

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <ostream>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/experiments/named_values.h"
 #include "sequences/experiments/predictive/measured.h"
+#include "sequences/experiments/published.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page.h"
@@ -98,16 +98,7 @@ Plot slices_plot(const PredictiveExperiment& experiment) {
   return plot;
 }
 
-}  // namespace
-
-void write_report(const PredictiveExperiment& experiment, const std::string& dir) {
-  write_text_atomically(dir + "/predictive.csv", csv_of(experiment));
-  write_text_atomically(dir + "/predictive.json", json_of(experiment));
-  write_plot(dir, "predictive-bound", polygons_plot(experiment));
-  write_plot(dir, "predictive-slices", slices_plot(experiment));
-}
-
-void print_report(const PredictiveExperiment& experiment, std::ostream& out) {
+PageTable predictive_table(const PredictiveExperiment& experiment) {
   PageTable table{{"setting", "draws", "of", "polygons %", "joined px", "MB held", "largest px", "PSNR dB",
                    "FLIP", "pop", "modelled ms", "joining ms", "plan ms", "draw ms", "composite ms"},
                   {},
@@ -119,11 +110,41 @@ void print_report(const PredictiveExperiment& experiment, std::ostream& out) {
                           fixed(r.quality.psnr_db, 1), fixed(r.quality.flip, 4), fixed(r.popping_rms, 2),
                           fixed(r.modelled_ms, 2), fixed(r.modelled_joining_ms, 2), fixed(r.plan_ms, 2),
                           fixed(r.render_ms, 2), fixed(r.composite_ms, 2)});
-  out << experiment.sequence << ": frames " << experiment.frames.first << "-" << experiment.frames.last
-      << ", one in " << experiment.frames.every << " drawn and compared with direct, "
-      << experiment.display_px.x << "x" << experiment.display_px.y << " px, " << experiment.samples
-      << " samples for each pixel\n"
-      << plain_text(table);
+  return table;
+}
+
+/// Polygons under one bound of 1 px.
+std::string verdict_on(const PredictiveExperiment& experiment) {
+  std::string text;
+  for (const char* series : {"delta", "threshold", "lookahead", "oracle"})
+    for (const PredictiveResult& r : experiment.results)
+      if (r.setting.series == series && r.setting.value == 1)
+        text += std::string(text.empty() ? "Under a bound of 1 px: " : ", ") +
+                (std::string(series) == "delta" ? "predictive" : series) + " draws " +
+                percent_of(double(r.polygons), double(r.polygons_reference)) + " %";
+  return text.empty() ? text : text + " of the polygons of reference.";
+}
+
+}  // namespace
+
+void write_report(const PredictiveExperiment& experiment, const std::string& dir) {
+  write_text_atomically(dir + "/predictive.csv", csv_of(experiment));
+  write_text_atomically(dir + "/predictive.json", json_of(experiment));
+  write_plot(dir, "predictive-bound", polygons_plot(experiment));
+  write_plot(dir, "predictive-slices", slices_plot(experiment));
+}
+
+Page page_of(const PredictiveExperiment& experiment) {
+  Page page{
+      "Buffers that parts share: " + experiment.sequence, {}, verdict_on(experiment), "predictive.html"};
+  page.blocks = {
+      Paragraph{measured_on(experiment.sequence, experiment.frames, experiment.display_px) +
+                formatted("; one frame in %d drawn and compared with direct, %d samples for each pixel",
+                          experiment.frames.every, experiment.samples)},
+      predictive_table(experiment),
+      Figure{"predictive-bound.svg", "Polygons drawn over the bound of the displayed error."},
+      Figure{"predictive-slices.svg", "Time of a frame over how far ahead it looks."}};
+  return page;
 }
 
 }  // namespace talisman::sequences

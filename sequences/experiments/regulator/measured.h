@@ -46,6 +46,8 @@ struct RegulatorReport {
   layers::ivec2 display_px{0, 0};
   ExperimentFrames frames;
   std::vector<SettingResult> settings;  ///< `reference` first
+  std::vector<std::string> runs;        ///< of each what it opens (stored_runs.h); empty: nothing is stored
+  double runs_s = 0, runs_mb = 0;       ///< what storing them took
   LookaheadCurve lookahead;
   std::vector<std::string> layers;  ///< names, by id
   std::vector<CalibrationSample> samples;

@@ -41,6 +41,7 @@ PlotSeries series_of(const RegulatorReport& report, const Scatter& at, const std
     const bool repeated = report.settings[k].setting.unit == "px" && name != "threshold";
     series.labels.push_back(repeated ? "" : report.settings[k].setting.knob());
     if (at.samples > 0) series.samples.push_back(at.samples);
+    if (!report.runs.empty()) series.links.push_back({report.settings[k].setting.words(), report.runs[k]});
   }
   return series;
 }

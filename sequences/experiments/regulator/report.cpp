@@ -2,15 +2,17 @@
 #include "sequences/experiments/regulator/report.h"
 
 #include <cmath>
-#include <ostream>
 
 #include <nlohmann/json.hpp>
 
+#include "sequences/experiments/large_plot.h"
 #include "sequences/experiments/named_values.h"
+#include "sequences/experiments/published.h"
 #include "sequences/experiments/regulator/plots.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page.h"
+#include "sequences/pictures/plot_links.h"
 #include "sequences/results/settings_json.h"
 
 namespace talisman::sequences {
@@ -115,6 +117,7 @@ PageTable cost_table(const RegulatorReport& report) {
          percent_of(double(r.chunks), double(reference.chunks)), fixed(r.plan.mean, 2),
          fixed(r.render.mean, 1), fixed(r.composite.mean, 1),
          fixed(r.plan.median + r.render.median + r.composite.median, 1), fixed(r.modelled_ms, 2)});
+  table.links = report.runs;
   return table;
 }
 
@@ -170,14 +173,69 @@ std::string in_words(const std::vector<CalibrationSummary>& calibration) {
   for (const CalibrationSummary& c : calibration)
     for (const CalibrationBin& bin : c.bins)
       if (bin.center == 1)
-        words += "1 " + std::string(c.fiducial->unit) + " of " + c.fiducial->name +
+        words += (words.empty() ? "1 " : "\n1 ") + std::string(c.fiducial->unit) + " of " + c.fiducial->name +
                  " buys a median error of " + fixed(bin.median_error, 2) + " code values (" +
                  fixed(bin.psnr_db(), 1) + " dB), quartiles " + fixed(bin.lower_error, 2) + " and " +
-                 fixed(bin.upper_error, 2) + ", n = " + std::to_string(bin.samples) + "\n";
+                 fixed(bin.upper_error, 2) + ", n = " + std::to_string(bin.samples);
   return words;
 }
 
 std::string size_text(layers::ivec2 px) { return std::to_string(px.x) + "x" + std::to_string(px.y); }
+
+/// Under the bound that is compared and nearest to the sequence's own.
+std::string verdict_on(const RegulatorReport& report) {
+  const auto distance = [&](double px) {
+    return std::fabs(std::log(px / std::max(report.given.regulator.thresholds.geometric_px, 1e-3)));
+  };
+  double bound_px = compared_thresholds().front();
+  for (const double px : compared_thresholds())
+    if (distance(px) < distance(bound_px)) bound_px = px;
+  const auto all = double(report.settings.front().polygons);
+  std::string text;
+  for (const SettingResult& r : report.settings)
+    if (r.setting.unit == "px" && r.setting.value == bound_px)
+      text += (text.empty() ? formatted("Under a bound of %g px ", bound_px) : ", ") + r.setting.series +
+              " draws " + percent_of(double(r.polygons), all) + " % of the polygons of reference (FLIP " +
+              fixed(r.quality.flip, 4) + ")";
+  return text.empty() ? text : text + ".";
+}
+
+std::vector<Block> cost_and_error(const RegulatorReport& report) {
+  return {
+      Heading{2, "What it costs"},
+      Paragraph{"% of reference; ms per frame, mean, measured on this machine; median of the sum"},
+      cost_table(report),
+      Figure{"regulator.svg", "Picture error against measured time of a frame.",
+             links_of(time_plot(report), kLargePlot)},
+      Heading{2, "How far from the truth"},
+      Paragraph{
+          "geometric error displayed; picture against reference; popping: step of the error, code values, "
+          "where sprites are drawn again (RMS, 95th percentile), and elsewhere; * least FLIP for its "
+          "polygons"},
+      error_table(report),
+      Figure{"regulator-polygons.svg", "Picture error against polygons drawn: without the noise of a clock.",
+             links_of(polygon_plot(report), kLargePlot)},
+      Figure{"regulator-bound.svg",
+             "Largest geometric error against renders: the oracle is the floor of renders.",
+             links_of(bound_plot(report), kLargePlot)},
+      Figure{"regulator-popping.svg", "Popping against polygons drawn.",
+             links_of(popping_plot(report), kLargePlot)}};
+}
+
+std::vector<Block> fiducials_and_pictures(const RegulatorReport& report) {
+  std::vector<Block> blocks = {
+      Heading{2, "What fiducials say of the picture"},
+      Paragraph{"against image error of each layer alone, Spearman's rho (1: rise together)"},
+      calibration_table(report.calibration)};
+  if (const std::string words = in_words(report.calibration); !words.empty())
+    blocks.push_back(Paragraph{words});
+  for (const CalibrationSummary& c : report.calibration) {
+    const std::string name = c.fiducial->name;
+    blocks.push_back(
+        Figure{"calibration-" + name + ".svg", "Image error of a layer against its " + name + " fiducial."});
+  }
+  return blocks;
+}
 
 }  // namespace
 
@@ -230,21 +288,26 @@ void write_report(const RegulatorReport& report, const std::string& dir) {
   write_text_atomically(dir + "/regulator.json", json_of(report));
 }
 
-void print_report(const RegulatorReport& report, std::ostream& out) {
-  out << report.sequence << ": frames " << report.frames.first << "-" << report.frames.last << " planned, "
-      << sampled_frames(report.frames).size() << " of them drawn and compared (one in " << report.frames.every
-      << "), " << size_text(report.display_px) << " px, warp " << report.warp
-      << "\n\nwhat it costs: % of reference; ms per frame, mean, measured on this machine; median of the "
-         "sum\n"
-      << plain_text(cost_table(report))
-      << "\nhow far from the truth: geometric error displayed; picture against reference; popping: step of "
-         "the\nerror, code values, where sprites are drawn again (RMS, 95th percentile), and elsewhere; "
-         "* least FLIP for its polygons\n"
-      << plain_text(error_table(report)) << "\nlookahead at " << fixed(report.lookahead.geometric_px, 2)
-      << " px, " << size_text(report.lookahead.display_px) << " px display, plan only\n"
-      << plain_text(lookahead_table(report.lookahead))
-      << "\nfiducials against image error of each layer alone, Spearman's rho (1: rise together)\n"
-      << plain_text(calibration_table(report.calibration)) << in_words(report.calibration);
+Page page_of(const RegulatorReport& report) {
+  Page page{"What accuracy costs in time: " + report.sequence, {}, verdict_on(report), "regulator.html"};
+  add(page, {Paragraph{measured_on(report.sequence, report.frames, report.display_px) + "; all planned, " +
+                       std::to_string(sampled_frames(report.frames).size()) +
+                       " of them drawn and compared (one in " + std::to_string(report.frames.every) +
+                       "), warp " + report.warp}});
+  if (!report.runs.empty())
+    add(page,
+        {Paragraph{"each point of the plots and each row of the first table opens its run, planned again, "
+                   "with every decision and its reason: " +
+                   std::to_string(report.runs.size()) + " reports, " + fixed(report.runs_mb, 1) +
+                   " MB, made in " + fixed(report.runs_s, 1) + " s"}});
+  add(page, cost_and_error(report));
+  add(page,
+      {Heading{2, "Lookahead"},
+       Paragraph{"at " + fixed(report.lookahead.geometric_px, 2) + " px, " +
+                 size_text(report.lookahead.display_px) + " px display, plan only"},
+       lookahead_table(report.lookahead), Figure{"lookahead.svg", "Renders against frames known ahead."}});
+  add(page, fiducials_and_pictures(report));
+  return page;
 }
 
 }  // namespace talisman::sequences

@@ -12,16 +12,17 @@
 /// - calibration.csv: one line per sample, fiducials and image error (calibration.h)
 /// - calibration-NAME.svg: image error against one fiducial, with the medians of its octaves
 /// - regulator.json: talisman.regulator/1, all of it but the samples
+/// - regulator.html: all of it as a page, in which a point opens its run (stored_runs.h)
 ///
 /// Beside each SVG lies a CSV with the points that it shows. Columns named `wall_…` are measured times; all
 /// else is the same in every run. The oracle is a floor of renders alone: it counts a small sprite and a large one
 /// alike, and may take more polygons or pixels than another schedule. Popping is missing ('-', null) where no sprite
 /// was drawn again in the frames that were compared.
 
-#include <iosfwd>
 #include <string>
 
 #include "sequences/experiments/regulator/measured.h"
+#include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
 
@@ -32,6 +33,6 @@ std::string json_of(const RegulatorReport& report);
 /// Writes all files into the folder, which is there. Throws OutputError.
 void write_report(const RegulatorReport& report, const std::string& dir);
 
-void print_report(const RegulatorReport& report, std::ostream& out);
+Page page_of(const RegulatorReport& report);
 
 }  // namespace talisman::sequences

@@ -83,6 +83,8 @@ std::string RegulatorSetting::knob() const {
   return text;
 }
 
+std::string RegulatorSetting::words() const { return unit.empty() ? series : series + " " + knob(); }
+
 std::vector<double> compared_thresholds() { return {0.25, 0.5, 1, 2, 4, 8}; }
 std::vector<double> compared_budgets() { return {5, 10, 20, 40, 80}; }
 

@@ -28,7 +28,8 @@ struct RegulatorSetting {
   std::string unit;    ///< of `value`: "px", "frames", "%"; empty: there is no knob
   double value = 0;    ///< the knob
   regulator::RegulatorOptions options;
-  std::string knob() const;  ///< "4 px", "N 3", "10 %", or empty
+  std::string knob() const;   ///< "4 px", "N 3", "10 %", or empty
+  std::string words() const;  ///< "threshold 4 px"
 };
 
 inline constexpr int kComparedLookahead = 16;

@@ -2,11 +2,11 @@
 #include "sequences/experiments/renderer/report.h"
 
 #include <cmath>
-#include <ostream>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/experiments/named_values.h"
+#include "sequences/experiments/published.h"
 #include "sequences/experiments/renderer/plots.h"
 #include "sequences/experiments/renderer/sheets.h"
 #include "sequences/files/atomic_file.h"
@@ -235,6 +235,62 @@ std::string list_of(const std::vector<int>& frames) {
   return text;
 }
 
+/// What costs most.
+std::string verdict_on(const RendererReport& report) {
+  const EffectResults& effects = report.effects;
+  const double all_ms = effects.frames.empty() ? 0 : effects.frames[0].cpu.median_ms;
+  const EffectResult* dearest = nullptr;
+  const auto cost = [&](const EffectResult& effect) {
+    return all_ms - effects.frames[effect.without].cpu.median_ms;
+  };
+  for (const EffectResult& effect : effects.pictures)
+    if (!dearest || cost(effect) > cost(*dearest)) dearest = &effect;
+  if (!dearest) return "No effect of a frame is called for.";
+  return "Of " + std::to_string(effects.pictures.size()) + " effects that are called for, " +
+         std::string(layers::name(dearest->call.effect)) + " costs most: " + fixed(cost(*dearest), 1) +
+         " ms of " + fixed(all_ms, 1) + " ms of processor time a frame; without it FLIP is " +
+         fixed(dearest->error.quality.flip, 4) + ".";
+}
+
+std::vector<Block> knob_blocks(const RendererReport& report) {
+  std::vector<Block> blocks = {
+      Heading{2, "Knobs, one turned at a time"},
+      Paragraph{
+          "against the truth: " + truth_in_words() +
+          "\nalone: against the same with this knob as the truth has it; gain over the next coarser rung, - "
+          "where times do not differ; front: least FLIP for its work (w), time (t)"},
+      knob_table(report.knobs),
+      Figure{"renderer-pixels.svg", "Knobs of the one pass: error against processor time."},
+      Figure{"renderer-pixels-work.svg", "The same against the count that a knob is paid in."},
+      Figure{"renderer-sprites.svg", "Knobs of sprites: error against processor time."},
+      Figure{"renderer-sprites-work.svg", "The same against the count that a knob is paid in."}};
+  for (const Knob& knob : report.knobs.ladder.knobs)
+    if (knob.called())
+      blocks.push_back(Figure{knob_sheet_file(knob), knob.name + ", rung by rung, where they differ most."});
+  return blocks;
+}
+
+std::vector<Block> effect_blocks(const RendererReport& report) {
+  const EffectResults& effects = report.effects;
+  std::vector<Block> blocks;
+  if (!effects.pictures.empty())
+    blocks = {
+        Heading{2, "Effects of a frame"},
+        Paragraph{
+            "policy reference: what it buys (the picture without against with) and costs (with - without)"},
+        effect_table(effects), Figure{"renderer-effects.svg", "What each effect costs, and what it buys."},
+        Figure{"effects.png", "With each effect above, without it below."}};
+  if (effects.over_time.empty()) return blocks;
+  const Workload& run = effects.run_load;
+  blocks.push_back(Heading{2, "Effects over time"});
+  blocks.push_back(Paragraph{"frames " + std::to_string(run.frames.front()) + "-" +
+                             std::to_string(run.frames.back()) + ", policy " + report.policy + ", " +
+                             std::to_string(run.compared.size()) + " of them compared with their direct"});
+  blocks.push_back(run_table(effects));
+  blocks.push_back(Figure{"renderer-over-time.svg", "Error against time, without each of them."});
+  return blocks;
+}
+
 }  // namespace
 
 std::string knobs_csv(const RendererReport& report) {
@@ -293,26 +349,17 @@ void write_report(const RendererReport& report, const std::string& dir) {
   write_text_atomically(dir + "/renderer.json", json_of(report));
 }
 
-void print_report(const RendererReport& report, std::ostream& out) {
-  const Workload& run = report.effects.run_load;
-  out << report.sequence << ": " << report.display_px.x << "x" << report.display_px.y << " px; frames "
-      << list_of(report.knobs.frames) << " drawn from nothing; ms per frame (cpu: of all threads), median of "
-      << report.rounds
-      << " interleaved rounds, +- its median deviation\n\nknobs, one turned at a time, against the truth: "
-      << truth_in_words()
-      << "\nalone: against the same with this knob as the truth has it; gain over the next coarser rung, - "
-         "where times do not differ; front: least FLIP for its work (w), time (t)\n"
-      << plain_text(knob_table(report.knobs));
-  if (!report.effects.pictures.empty())
-    out << "\neffects of a frame, policy reference: what it buys (the picture without against with) and "
-           "costs (with - without)\n"
-        << plain_text(effect_table(report.effects));
-  if (!report.effects.over_time.empty())
-    out << "\neffects over time: frames " << run.frames.front() << "-" << run.frames.back() << ", policy "
-        << report.policy << ", " << run.compared.size() << " of them compared with their direct\n"
-        << plain_text(run_table(report.effects));
-  const PageTable not_called = not_called_table(report);
-  if (!not_called.rows.empty()) out << "\n" << plain_text(not_called);
+Page page_of(const RendererReport& report) {
+  Page page{"Knobs and effects of the renderer: " + report.sequence, {}, verdict_on(report), "renderer.html"};
+  add(page, {Paragraph{report.sequence + ": " + std::to_string(report.display_px.x) + "x" +
+                       std::to_string(report.display_px.y) + " px; frames " + list_of(report.knobs.frames) +
+                       " drawn from nothing; ms per frame (cpu: of all threads), median of " +
+                       std::to_string(report.rounds) + " interleaved rounds, +- its median deviation"}});
+  add(page, knob_blocks(report));
+  add(page, effect_blocks(report));
+  if (const PageTable not_called = not_called_table(report); !not_called.rows.empty())
+    add(page, {Heading{2, "Not called for"}, not_called});
+  return page;
 }
 
 }  // namespace talisman::sequences

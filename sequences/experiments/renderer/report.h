@@ -11,14 +11,15 @@
 /// - renderer-effects.svg: what each effect of a frame costs and buys; renderer-over-time.svg: runs
 /// - knob-NAME.png: the same place of the picture at each rung, where the rungs differ most
 /// - effects.png: with and without each effect, where it changes most
+/// - renderer.html: all of it as a page
 ///
 /// Beside each SVG lies a CSV with the points that it shows. Columns named `wall_…` are measured times or
 /// follow from them; all else is the same in every run.
 
-#include <iosfwd>
 #include <string>
 
 #include "sequences/experiments/renderer/measured.h"
+#include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
 
@@ -29,6 +30,6 @@ std::string json_of(const RendererReport& report);
 /// Writes all files into the folder, which is there. Throws OutputError.
 void write_report(const RendererReport& report, const std::string& dir);
 
-void print_report(const RendererReport& report, std::ostream& out);
+Page page_of(const RendererReport& report);
 
 }  // namespace talisman::sequences

@@ -104,10 +104,12 @@ Image8 effect_sheet(const EffectResults& effects) {
   return sheet_of({"effects: with (above) and without (below)"}, columns, kScale);
 }
 
+std::string knob_sheet_file(const Knob& knob) { return "knob-" + file_name(knob.name) + ".png"; }
+
 void write_renderer_sheets(const RendererReport& report, const std::string& dir) {
   for (std::size_t k = 0; k < report.knobs.ladder.knobs.size(); ++k) {
     const Knob& knob = report.knobs.ladder.knobs[k];
-    if (knob.called()) write_png(dir + "/knob-" + file_name(knob.name) + ".png", knob_sheet(report.knobs, k));
+    if (knob.called()) write_png(dir + "/" + knob_sheet_file(knob), knob_sheet(report.knobs, k));
   }
   if (!report.effects.pictures.empty()) write_png(dir + "/effects.png", effect_sheet(report.effects));
 }

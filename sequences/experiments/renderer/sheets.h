@@ -18,6 +18,9 @@ Image8 knob_sheet(const KnobResults& results, std::size_t knob);
 /// With and without each effect of a frame, each where it changes most.
 Image8 effect_sheet(const EffectResults& effects);
 
+/// "knob-NAME.png".
+std::string knob_sheet_file(const Knob& knob);
+
 /// knob-NAME.png for every knob that is measured, and effects.png. Throws OutputError.
 void write_renderer_sheets(const RendererReport& report, const std::string& dir);
 

@@ -87,10 +87,11 @@ void add_item(Page& page, const ReproducedItem& item) {
 Page page_of(const Reproduction& reproduction) {
   Page page;
   page.title = "Results of papers, and ours";
+  page.file = "reproduce.html";
+  page.verdict = counts_of(reproduction) + ".";
   for (const std::string& paper : reproduction.papers) page.blocks.push_back(Paragraph{paper});
   page.blocks.push_back(
-      Paragraph{"The scenes of the papers are lost: what can agree is the shape, by the rule of each row. " +
-                counts_of(reproduction) + "."});
+      Paragraph{"The scenes of the papers are lost: what can agree is the shape, by the rule of each row."});
   for (const ReproducedItem& item : reproduction.items) add_item(page, item);
   return page;
 }
@@ -130,7 +131,7 @@ void write_report(const Reproduction& reproduction, const std::string& dir) {
     for (const PaperFigure& drawing : item.drawings) write_plot(dir, drawing.file, drawing.plot, kLargePlot);
   write_text_atomically(dir + "/reproduce.csv", reproduction_csv(reproduction));
   write_text_atomically(dir + "/numbers.csv", numbers_csv(reproduction));
-  write_text_atomically(dir + "/reproduce.html", html(page_of(reproduction), dir));
+  write_page(page_of(reproduction), dir);
   write_text_atomically(dir + "/reproduce.json", json_of(reproduction));
 }
 

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ostream>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "sequences/experiments/large_plot.h"
 #include "sequences/experiments/named_values.h"
+#include "sequences/experiments/published.h"
 #include "sequences/files/atomic_file.h"
 #include "sequences/pictures/page.h"
 
@@ -109,16 +109,6 @@ std::string answer_line(const TuneReport& report, const TuneAnswer& answer) {
   return line + "; modelled drawing " + fixed(mean_of(answer.point.plan.frame_ms), 2) +
          " ms a frame, at most " + fixed(worst_of(answer.point.plan.frame_ms), 2) + " ms, " +
          fixed(100 * report.cost_share(answer.point.plan), 1) + " % of reference";
-}
-
-std::string indented(const std::string& text) {
-  std::string result;
-  for (std::size_t at = 0; at < text.size();) {
-    const std::size_t end = text.find('\n', at);
-    result += "    " + text.substr(at, end - at) + "\n";
-    at = end == std::string::npos ? text.size() : end + 1;
-  }
-  return result;
 }
 
 Json json_of_point(const TuneReport& report, const TunePoint& point) {
@@ -273,22 +263,22 @@ void write_report(const TuneReport& report, const std::string& dir) {
   write_plot(dir, "tune-curve", tune_plot(report), kLargePlot);
 }
 
-void print_report(const TuneReport& report, std::ostream& out) {
-  out << report.sequence << ": frames " << report.range.first << "-" << report.range.last << " of "
-      << report.display_px.x << "x" << report.display_px.y << " px, policy " << report.policy << ", goal "
-      << report.goal.in_words() << "\n\n"
-      << plain_text(curve_table(report)) << "\n"
-      << report.frames_drawn << " frames drawn, as many as " << fixed(report.full_renders(), 1)
-      << " full renders\n";
-  if (!report.common) return;
-  out << "\n"
-      << (report.common->holds ? "one threshold for all layers: " : "not reached; nearest: ")
-      << formatted("%g px", report.common->point.plan.thresholds.geometric_px) << "\n  "
-      << answer_line(report, *report.common) << "\n\n"
-      << indented(yaml_of(report, report.common->point));
-  if (!report.per_layer) return;
-  out << "\nper layer:\n  " << answer_line(report, *report.per_layer) << "\n\n"
-      << indented(yaml_of(report, report.per_layer->point));
+Page page_of(const TuneReport& report) {
+  Page page{"The cheapest thresholds: " + report.sequence, {}, {}, "tune.html"};
+  page.blocks = {Paragraph{measured_on(report.sequence, report.range, report.display_px) + ", policy " +
+                           report.policy + ", goal " + report.goal.in_words()},
+                 curve_table(report), Figure{"tune-curve.svg", tune_plot(report).title},
+                 Paragraph{std::to_string(report.frames_drawn) + " frames drawn, as many as " +
+                           fixed(report.full_renders(), 1) + " full renders"}};
+  if (!report.common) return page;
+  page.verdict = (report.common->holds ? "One threshold for all layers: " : "Not reached; nearest: ") +
+                 formatted("%g px, ", report.common->point.plan.thresholds.geometric_px) +
+                 answer_line(report, *report.common) + ".";
+  page.blocks.push_back(Verbatim{yaml_of(report, report.common->point)});
+  if (!report.per_layer) return page;
+  page.blocks.push_back(Paragraph{"per layer: " + answer_line(report, *report.per_layer)});
+  page.blocks.push_back(Verbatim{yaml_of(report, report.per_layer->point)});
+  return page;
 }
 
 }  // namespace talisman::sequences

@@ -154,6 +154,7 @@ void add_second_series(Page& page, const WarpReport& report) {
 Page page_of(const WarpReport& report) {
   Page page;
   page.title = "Comparison of warps";
+  page.file = "report.html";
   page.blocks.push_back(
       Paragraph{"After Lengyel and Snyder 1997, section 4.2, figures 15 and 16. Characteristic points: " +
                 report.bound + "."});
@@ -196,7 +197,7 @@ void write_report(const WarpReport& report, const std::string& dir) {
     write_plot(dir, file_of(report, figure), plot_of(report, figure));
   const Page page = page_of(report);
   write_text_atomically(dir + "/warps.md", markdown(page));
-  write_text_atomically(dir + "/report.html", html(page, dir));
+  write_page(page, dir);
 }
 
 void print_report(const WarpReport& report, std::ostream& out) {

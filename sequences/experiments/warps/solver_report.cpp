@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <ostream>
 
 #include "sequences/experiments/large_plot.h"
 #include "sequences/experiments/statistics.h"
@@ -180,6 +179,22 @@ Plot family_plot(const MeasuredSolvers& rungs, Family family) {
   return plot;
 }
 
+/// From one end of the front to the other.
+std::string verdict_on(const MeasuredSolvers& rungs) {
+  std::vector<const MeasuredSolver*> front;
+  for (const MeasuredSolver& rung : rungs)
+    if (rung.on_front) front.push_back(&rung);
+  if (front.empty()) return {};
+  const auto us = [](const MeasuredSolver* rung) { return rung->times[kShown].median_us; };
+  std::sort(front.begin(), front.end(), [&](auto* a, auto* b) { return us(a) < us(b); });
+  const auto words = [&](const MeasuredSolver* rung) {
+    return rung->solver.name + text(" (%.4g px", rung->accuracies[kShown].mean_max_px) + " in " +
+           micro(us(rung)) + " us)";
+  };
+  return std::to_string(front.size()) + " of " + std::to_string(rungs.size()) + " lie on the front, from " +
+         words(front.front()) + " to " + words(front.back()) + ".";
+}
+
 }  // namespace
 
 MeasuredSolvers measure_solvers(int inputs, ProgressKind progress_kind) {
@@ -210,10 +225,18 @@ void write_report(const MeasuredSolvers& rungs, const std::string& dir) {
   write_plot(dir, "solvers-perspective", family_plot(rungs, Family::Perspective), kLargePlot);
 }
 
-void print_report(const MeasuredSolvers& rungs, std::ostream& out) {
-  out << "14 points; max px: mean of the largest error; excess: over the certified optimum of the family\n"
-      << plain_text(accuracy_table(rungs)) << "\nmicroseconds per fit, median / 99th percentile\n"
-      << plain_text(time_table(rungs));
+Page page_of(const MeasuredSolvers& rungs) {
+  return {
+      "What a warp costs: " + std::to_string(rungs.size()) + " solvers",
+      {Heading{2, "Accuracy"},
+       Paragraph{
+           "14 points; max px: mean of the largest error; excess: over the certified optimum of the family"},
+       accuracy_table(rungs), Figure{"solvers.svg", "Largest error against time, all families."},
+       Figure{"solvers-affine.svg", "Affine: excess over the certified optimum against time."},
+       Figure{"solvers-perspective.svg", "Perspective: the same."}, Heading{2, "Time"},
+       Paragraph{"microseconds per fit, median / 99th percentile"}, time_table(rungs)},
+      verdict_on(rungs),
+      "solvers.html"};
 }
 
 }  // namespace talisman::sequences

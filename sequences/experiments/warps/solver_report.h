@@ -8,16 +8,17 @@
 /// - solvers.svg: time against the largest error in pixels, 14 points, all families; the Pareto front is
 ///   marked
 /// - solvers-affine.svg, solvers-perspective.svg: time against the excess over the certified optimum
+/// - solvers.html: all of it as a page
 ///
 /// All but the times, and who is on the front by them, is the same in every run.
 
 #include <array>
-#include <iosfwd>
 #include <string>
 #include <vector>
 
 #include "sequences/experiments/warps/solver_measure.h"
 #include "sequences/files/progress.h"
+#include "sequences/pictures/page.h"
 
 namespace talisman::sequences {
 
@@ -43,6 +44,6 @@ MeasuredSolvers measure_solvers(int inputs, ProgressKind progress);
 /// Writes all files into the folder, which is there. Throws OutputError.
 void write_report(const MeasuredSolvers& solvers, const std::string& dir);
 
-void print_report(const MeasuredSolvers& solvers, std::ostream& out);
+Page page_of(const MeasuredSolvers& solvers);
 
 }  // namespace talisman::sequences

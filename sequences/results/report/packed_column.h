@@ -45,7 +45,4 @@ class PackedColumn {
   std::unique_ptr<Deflater> deflater_;
 };
 
-/// RFC 4648, with padding.
-std::string base64(const std::string& bytes);
-
 }  // namespace talisman::sequences

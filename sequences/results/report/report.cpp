@@ -122,11 +122,34 @@ std::string worst_table(const ReportRun& run, const std::string& suffix) {
                       {"layer", "decision", "reason", "frame", "error px"}, rows, 3);
 }
 
+/// The plans at other thresholds, the run itself among them; empty: there are none.
+std::vector<Json> what_if_plans_of(const ReportRun& run) {
+  const bool is_there =
+      run.what_if.is_object() && run.what_if.contains("plans") && run.what_if["plans"].is_array();
+  return is_there ? run.what_if["plans"].get<std::vector<Json>>() : std::vector<Json>();
+}
+
+/// "Another threshold: at 2 px 66.1 ms a frame for drawing (+24 %), …". Empty: not known.
+std::string what_if_words(const ReportRun& run) {
+  constexpr const char* kCost = "modelled_drawing_ms";
+  double own_ms = 0;
+  for (const Json& plan : what_if_plans_of(run))
+    if (number_in(plan, "factor") == 1) own_ms = number_in(plan, kCost);
+  std::string words;
+  for (const Json& plan : what_if_plans_of(run)) {
+    const double ms = number_in(plan, kCost);
+    if (own_ms > 0 && number_in(plan, "factor") != 1)
+      words += formatted("%s %.4g px %.3g ms a frame for drawing (%+.0f %%)", words.empty() ? "at" : ", at",
+                         number_in(plan, "geometric_px"), ms, 100 * (ms / own_ms - 1));
+  }
+  return words.empty() ? words : "Another threshold, as planned: " + words;
+}
+
 std::string what_if_table(const ReportRun& run, const std::string& suffix) {
-  if (!run.what_if.is_object() || !run.what_if.contains("plans") || !run.what_if["plans"].is_array())
-    return {};
+  const std::vector<Json> plans = what_if_plans_of(run);
+  if (plans.empty()) return {};
   std::vector<std::vector<std::string>> rows;
-  for (const Json& plan : run.what_if["plans"]) {
+  for (const Json& plan : plans) {
     const auto number = [&](const char* key) { return number_in(plan, key); };
     rows.push_back({formatted("%.4g px", number("geometric_px")), formatted("%.4g ×", number("factor")),
                     number_element(100 * number("mean_update_rate"), 1), large(number("polygons_rendered")),
@@ -149,10 +172,9 @@ std::string cost_against_error(const std::vector<ReportRun>& runs) {
     const ReportRun& run = runs[k];
     const std::string name = runs.size() > 1 ? std::string(1, static_cast<char>('A' + k)) + ": " : "";
     const int series = static_cast<int>(k);
-    const bool has_plans =
-        run.what_if.is_object() && run.what_if.contains("plans") && run.what_if["plans"].is_array();
-    if (has_plans)
-      for (const Json& plan : run.what_if["plans"])
+    const std::vector<Json> plans = what_if_plans_of(run);
+    if (!plans.empty())
+      for (const Json& plan : plans)
         scatter.points.push_back({number_in(plan, "modelled_drawing_ms"), number_in(plan, "max_geometric_px"),
                                   series, name + formatted("%.4g px", number_in(plan, "geometric_px"))});
     else if (run.sums.frames > 0)
@@ -222,6 +244,9 @@ std::string run_section(const ReportRun& run, const std::string& suffix, const s
   if (!suffix.empty()) text += "<h2>" + escaped(heading) + "</h2>\n";
   text += "<p class=\"facts\">" + escaped(what_ran(run)) + "</p>\n<p class=\"verdict\" id=\"verdict" +
           suffix + "\">" + escaped(verdict_on(run)) + "</p>\n";
+  if (const std::string words = what_if_words(run); !words.empty())
+    text +=
+        "<p class=\"facts\">" + escaped(words) + ". <a href=\"#what-if" + suffix + "\">The table.</a></p>\n";
   if (const std::string times = measured_times(run); !times.empty())
     text += "<p class=\"measured\">Measured with a clock, on one machine: " + escaped(times) + ".</p>\n";
   if (!run.left_out.empty()) {

@@ -41,6 +41,19 @@ std::string picture_error(const ReportRun& run) {
   return text + (marked.empty() ? "; the audit marks no layer" : "; the audit marks " + marked);
 }
 
+/// The layer that takes most texels; nothing where nothing is drawn.
+std::string dearest_layer(const ReportRun& run) {
+  const LayerCounts* dearest = nullptr;
+  double all = 0;
+  for (const LayerCounts& layer : run.layers) {
+    all += layer.pixels;
+    if (!dearest || layer.pixels > dearest->pixels) dearest = &layer;
+  }
+  return dearest && all > 0 ? "; " + dearest->name + " is the dearest layer, " +
+                                  percent_of(dearest->pixels, all) + " % of these texels"
+                            : std::string();
+}
+
 /// A plan knows what drawing takes, and no more; so it is with what `reference` would draw.
 std::string modelled_ms(const ReportRun& run) {
   const FrameSums& sums = run.sums;
@@ -78,6 +91,7 @@ std::string verdict_on(const ReportRun& run) {
           drawn_of(sums.pixels, sums.pixels_reference, "texels") + " of what reference draws, " +
           modelled_ms(run);
   const WorstDecision* worst = run.worst.empty() ? nullptr : run.worst.data();
+  text += dearest_layer(run);
   text += worst ? formatted("; largest error of a fiducial %.4g px", worst->geometric_px) + " (" +
                       worst->layer + ", frame " + std::to_string(worst->frame) + ")"
                 : std::string("; no fiducial says an error");

@@ -3,7 +3,8 @@
 // Where a setting has another name than its option, and how far its slider goes.
 const kSettingOf = {hold: "hold_frames", blend: "blend_frames", lookahead: "lookahead_frames", "expected-reuse": "expected_reuse_frames",
                     resolution: "resolution_scale", size: "display_px"};
-const kRanges = {"geometric-px": [0, 16, 0.05], photometric: [0, 1, 0.005], "light-angle-deg": [0, 90, 0.5], "shadow-map-px": [0, 16, 0.1],
+const kRanges = {"tree-k": [2, 16, 1], "regroup-dwell": [1, 120, 1], "depth-complexity": [0, 8, 0.1], "material-points": [0, 1024, 16], compression: [0, 100, 1],
+                 "geometric-px": [0, 16, 0.05], photometric: [0, 1, 0.005], "light-angle-deg": [0, 90, 0.5], "shadow-map-px": [0, 16, 0.1],
                  "turned-px": [0, 64, 0.5], hold: [1, 30, 1], blend: [0, 16, 1], lookahead: [0, 64, 1], "min-resolution": [0.1, 1, 0.05],
                  resolution: [0.1, 2, 0.05], "expected-reuse": [0, 30, 1], "cutoff-px": [0, 8, 0.1]};
 const kOpenGroups = ["Policy", "Thresholds"];
@@ -11,6 +12,7 @@ const kOpenGroups = ["Policy", "Thresholds"];
 // What the sequence itself has, as the option would be typed.
 function settingOf(settings, option) {
   if (option === "light-angle-deg") return String(Number(((settings.light_angle_rad * 180) / Math.PI).toPrecision(6)));
+  if (option === "compression") return String(settings.compression ?? 0);
   const value = settings[kSettingOf[option] ?? option.replaceAll("-", "_")];
   if (Array.isArray(value)) return value.join("x");
   if (typeof value === "boolean") return value ? "on" : "off";

@@ -107,8 +107,13 @@ class LiveView {
       const frame = this.flight.poses.length > 0 && this.moving ? this.flight.poses.length - 1 : selection.frame, mode = at("mode").value;
       const response = await this.ask("/picture", {frame, mode, scale: this.moving ? kCoarse : 1});
       if (epoch !== this.epoch) return;
-      if (response.status === 200) this.showPicture(frame, mode, await response.blob());
-      else if (response.status === 422) this.controls.say((await response.json()).error);
+      if (response.status === 200) {
+        if (this.refused) this.controls.say("");
+        this.showPicture(frame, mode, await response.blob());
+      } else if (response.status === 422) {
+        this.controls.say((await response.json()).error);
+      }
+      this.refused = response.status === 422;
     } while (this.again);
     this.drawing = false;
   }

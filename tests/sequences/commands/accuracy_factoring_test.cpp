@@ -192,7 +192,7 @@ TEST(FactoringFiles, AllButTheTimesIsTheSameInEveryRun) {
 
 TEST(FactoringFiles, TableHasNoNumberThatIsNone) {
   tests::expect_table(tests::printed(full_report()),
-                      {"2 of them drawn", "over alone", "+ reuse", "what factoring saves"});
+                      {"2 frames drawn", "over alone", "+ reuse", "What factoring saves"});
 }
 
 TEST(ErrorMap, WhiteIsNoErrorAndColoursSayItsSign) {

@@ -55,11 +55,10 @@ HardReport broken_report() {
 }
 
 TEST(PrintHardReport, NamesWhatIsBrokenWithItsNumbers) {
-  std::ostringstream out;
-  print_report(broken_report(), out);
-  EXPECT_THAT(out.str(),
+  const std::string out = plain_text(page_of(broken_report()));
+  EXPECT_THAT(out,
               HasSubstr("2 cases, extremes 1 ... 1e+06: 1 hold, 0 are refused as they should, 1 are broken"));
-  EXPECT_THAT(out.str(), HasSubstr("broken: order, torn: 2.5 px, rule: <= 1 px"));
+  EXPECT_THAT(out, HasSubstr("broken: order, torn: 2.5 px, rule: <= 1 px"));
   EXPECT_EQ(broken_cases(broken_report()), 1);
 }
 

@@ -101,12 +101,12 @@ TEST_F(RegulatorReportFiles, OneFrameIsEnough) {
   EXPECT_TRUE(single.samples.empty()) << "there is no older sprite";
   write_report(single, folder_.path());
   EXPECT_THAT(folder_.read("calibration-geometric.svg"), HasSubstr("no data"));
-  EXPECT_THAT(tests::printed(single), HasSubstr("frames 0-0 planned"));
+  EXPECT_THAT(tests::printed(single), HasSubstr("frames 0-0, 64x48 px; all planned"));
 }
 
 TEST_F(RegulatorReportFiles, TheTableSaysWhatWasUsed) {
   tests::expect_table(tests::printed(report()),
-                      {"frames 0-17 planned, 3 of them drawn", "64x48 px", "lookahead 16", "oracle"});
+                      {"frames 0-17, 64x48 px; all planned, 3 of them drawn", "lookahead 16", "oracle"});
 }
 
 TEST(MeasureRegulatorReport, DefaultsFitTheDisplayAndTheNumberOfFrames) {

@@ -134,7 +134,7 @@ TEST(MeasureRendererReport, OfAPlainSceneHasNothingToShowOfWhatIsNotCalledFor) {
   EXPECT_FALSE(folder.names().contains("knob-texture-filter.png"));
   const std::string table = tests::printed(report);
   EXPECT_THAT(table, HasSubstr("no material has a texture"));
-  EXPECT_EQ(table.find("effects over time"), std::string::npos);
+  EXPECT_EQ(table.find("Effects over time"), std::string::npos);
 }
 
 TEST(MeasureRendererReport, DefaultsFitTheDisplayAndTheNumberOfFrames) {

@@ -5,7 +5,6 @@
 
 #include <functional>
 #include <initializer_list>
-#include <sstream>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -28,9 +27,7 @@ inline void expect_files(const TemporaryFolder& folder, std::initializer_list<co
 
 template <typename Report>
 std::string printed(const Report& report) {
-  std::ostringstream out;
-  print_report(report, out);
-  return out.str();
+  return plain_text(page_of(report));
 }
 
 /// All of the texts are in the table, and no number that is none.

@@ -106,7 +106,7 @@ TEST_F(LateRuns, GoOnWhereTheyWereStopped) {
   const std::string words =
       "render flight.yaml --latency-ms 40,10 --predict kalman --quiet --no-report --out ";
   ok(words + "whole");
-  run_and_signal(words + "stopped", path("stopped/frames/0005.png"), "TERM");
+  run_and_signal(words + "stopped", "stopped/frames/0005.png", SIGTERM);
   ok(words + "stopped --resume");
   EXPECT_EQ(frame_hashes("whole"), frame_hashes("stopped"));
   expect_bad_input("render flight.yaml --latency-ms 40,20 --predict kalman --resume --out whole",

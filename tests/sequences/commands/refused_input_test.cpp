@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-const std::string kShort = " --frames 0-2 --size 64x48 --progress none";
+const std::string kThreeSmall = " --frames 0-2 --size 64x48 --progress none";
 
 class RefusedInput : public Tool {
  protected:
@@ -44,9 +44,9 @@ std::string with(const std::string& from, const std::string& to, const std::stri
 TEST_F(RefusedInput, WhatSpeaksOfSpritesNeedsThem) {
   for (const std::string option : {"--separate", "--overlay", "--audit 2", "--late-chunks on",
                                    "--format exr-layers", "--compression 85"})
-    expect_bad_input("render passing.yaml --policy direct " + option + kShort + " --out o",
+    expect_bad_input("render passing.yaml --policy direct " + option + kThreeSmall + " --out o",
                      {option.substr(0, option.find(' ')), "needs sprites, but --policy is direct"});
-  expect_bad_input("audit passing.yaml --policy direct" + kShort + " --out o",
+  expect_bad_input("audit passing.yaml --policy direct" + kThreeSmall + " --out o",
                    {"audit needs sprites, but --policy is direct"});
   EXPECT_FALSE(fs::exists(folder_ / "o"));
 }
@@ -71,7 +71,7 @@ TEST_F(RefusedInput, NumbersBeyondTheRangeOfTheFormat) {
       {"layers:\n", "placement: {resolution_scale: 1e-200}\nlayers:\n", "resolution_scale is '1e-200'"}};
   for (const Case& c : cases) {
     write("bad.yaml", with(c.from, c.to, kPassing));
-    expect_bad_input("plan bad.yaml" + kShort + " --out o", {"bad.yaml:", c.place, "rule: "});
+    expect_bad_input("plan bad.yaml" + kThreeSmall + " --out o", {"bad.yaml:", c.place, "rule: "});
   }
   EXPECT_FALSE(fs::exists(folder_ / "o"));
   for (const std::string option : {"--exposure 1e-308", "--turntable 1e-308", "--expected-reuse 1e-308",
@@ -89,18 +89,18 @@ TEST_F(RefusedInput, TextThatIsEmpty) {
 
 TEST_F(RefusedInput, ASecondDocument) {
   write("two.yaml", std::string(kPassing) + "---\n" + kPassing);
-  expect_bad_input("plan two.yaml" + kShort,
+  expect_bad_input("plan two.yaml" + kThreeSmall,
                    {"two.yaml:", "a second document, rule: one YAML document in a file"});
 }
 
 // The results of an earlier run were gone when the library's exception came.
 TEST_F(RefusedInput, NamesThatAreNotUtf8AreWrittenAsIfTheyWereLatin1) {
-  ASSERT_EQ(run("plan passing.yaml" + kShort + " --out o").exit_code, 0);
+  ASSERT_EQ(run("plan passing.yaml" + kThreeSmall + " --out o").exit_code, 0);
   write("p\xff.yaml", kPassing);
   const std::string cube = kCube;
   write("c\xfc.obj", cube.substr(0, cube.find("f 5")) + "g b\xfcro\n" + cube.substr(cube.find("f 5")));
   for (const std::string file : {"p\xff.yaml", "c\xfc.obj"}) {
-    const Outcome outcome = run("render '" + file + "'" + kShort + " --out o --force");
+    const Outcome outcome = run("render '" + file + "'" + kThreeSmall + " --out o --force");
     EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
     EXPECT_TRUE(nlohmann::json::accept(read("o/run.json"))) << file;
     EXPECT_EQ(run("inspect '" + file + "' --json").exit_code, 0) << file;
@@ -112,7 +112,7 @@ TEST_F(RefusedInput, NamesThatAreNotUtf8AreWrittenAsIfTheyWereLatin1) {
 }
 
 TEST_F(RefusedInput, FoldersWhereFilesBelongAndFilesWhereFoldersDo) {
-  const std::string options = "render passing.yaml" + kShort + " --out o";
+  const std::string options = "render passing.yaml" + kThreeSmall + " --out o";
   for (const std::string place :
        {"run.json", "decisions.jsonl", "decisions.jsonl.partial", "frames.jsonl.partial.new", "timing.jsonl",
         "summary.json", "what-if.json", "report.html", "video.mp4", "frames/0001.png"}) {
@@ -132,7 +132,7 @@ TEST_F(RefusedInput, FoldersWhereFilesBelongAndFilesWhereFoldersDo) {
     expect_bad_input(options, {place + ": is no folder, rule: "});
     fs::remove_all(folder_ / "o");
   }
-  expect_bad_input("plan passing.yaml" + kShort + " --out passing.yaml/o",
+  expect_bad_input("plan passing.yaml" + kThreeSmall + " --out passing.yaml/o",
                    {"passing.yaml/o: stands below a file"});
 }
 
@@ -141,25 +141,26 @@ TEST_F(RefusedInput, PipesWhereFilesBelong) {
   fs::create_directories(folder_ / "o");
   for (const std::string place : {"run.json", "frames.jsonl.partial.new"}) {
     ASSERT_EQ(run_shell("mkfifo o/" + place).exit_code, 0);
-    expect_bad_input("plan passing.yaml" + kShort + " --out o", {"o/" + place + ": is no file"});
+    expect_bad_input("plan passing.yaml" + kThreeSmall + " --out o", {"o/" + place + ": is no file"});
     fs::remove(folder_ / "o" / place);
   }
 }
 
 TEST_F(RefusedInput, PicturesAreNotReplacedByARunThatDrawsNone) {
-  ASSERT_EQ(run("render passing.yaml" + kShort + " --out o").exit_code, 0);
+  ASSERT_EQ(run("render passing.yaml" + kThreeSmall + " --out o").exit_code, 0);
   const auto before = contents("o");
-  expect_bad_input("plan passing.yaml" + kShort + " --out o", {"o/run.json", "holds pictures"});
-  expect_bad_input("audit passing.yaml" + kShort + " --out o", {"o/run.json", "holds pictures", "--force"});
-  expect_bad_input("render passing.yaml --format none" + kShort + " --out o",
+  expect_bad_input("plan passing.yaml" + kThreeSmall + " --out o", {"o/run.json", "holds pictures"});
+  expect_bad_input("audit passing.yaml" + kThreeSmall + " --out o",
+                   {"o/run.json", "holds pictures", "--force"});
+  expect_bad_input("render passing.yaml --format none" + kThreeSmall + " --out o",
                    {"o/run.json", "holds pictures"});
   EXPECT_EQ(contents("o"), before);
-  EXPECT_EQ(run("render passing.yaml --format none --force" + kShort + " --out o").exit_code, 0);
+  EXPECT_EQ(run("render passing.yaml --format none --force" + kThreeSmall + " --out o").exit_code, 0);
 }
 
 /// Files of a run that somebody else has written into.
 TEST_F(RefusedInput, ResultsThatWereEditedAreSaidToBe) {
-  ASSERT_EQ(run("render passing.yaml" + kShort + " --out o").exit_code, 0);
+  ASSERT_EQ(run("render passing.yaml" + kThreeSmall + " --out o").exit_code, 0);
   const auto good = contents("o");
   const std::string edits[] = {
       "",

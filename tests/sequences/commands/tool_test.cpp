@@ -245,6 +245,10 @@ TEST_F(Tool, AccuracyOfTheRegulatorOnABareModel) {
   for (const char* name :
        {"regulator.csv", "regulator.svg", "regulator.json", "lookahead.csv", "calibration.csv"})
     EXPECT_TRUE(fs::exists(folder_ / ("o/" + std::string(name)))) << name;
+  const std::string page = read("o/regulator.html");
+  EXPECT_THAT(page, HasSubstr("<p class=\"verdict\" id=\"verdict\">Under a bound of "));
+  EXPECT_THAT(page, HasSubstr("<th scope=\"row\"><a href=\"runs/threshold-4-px.html\">threshold</a></th>"));
+  EXPECT_THAT(page, HasSubstr("<a href=\"runs/hold-N-3.html\" aria-label=\"hold N 3\"><circle"));
   expect_bad_input("accuracy --regulator nothing", {"nothing"});
   expect_bad_input("accuracy --regulator cube.obj --frames 5-2", {"--frames", "5-2"});
   expect_bad_input("accuracy --regulator cube.obj --size 0x9", {"--size", "0x9"});

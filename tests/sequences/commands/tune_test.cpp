@@ -109,7 +109,7 @@ TEST_F(Tune, BudgetIsThatOfTheWorstFrameAndTheFinestThresholdWithinIt) {
 TEST_F(Tune, WhatCannotBeReachedIsSaidWithTheNearest) {
   const Outcome outcome = run("tune bodies.yaml --budget-ms 0.001 --progress none --out t");
   EXPECT_EQ(outcome.exit_code, 1);
-  EXPECT_THAT(outcome.output, AllOf(HasSubstr("not reached; nearest: "), HasSubstr("no threshold holds it"),
+  EXPECT_THAT(outcome.output, AllOf(HasSubstr("Not reached; nearest: "), HasSubstr("no threshold holds it"),
                                     HasSubstr("--frames 1-11 leaves it out")));
   EXPECT_FALSE(Json::parse(read("t/tune.json"))["one_for_all"]["holds"].get<bool>());
 }

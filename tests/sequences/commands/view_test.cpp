@@ -7,6 +7,7 @@
 #include "sequences/commands/run_words.h"
 #include "sequences/pictures/page_assets.h"
 #include "sequences/view/live_view.h"
+#include "sequences/view/view_request.h"
 #include "tests/sequences/commands/tool.h"
 
 namespace talisman::sequences {
@@ -70,6 +71,8 @@ TEST_F(View, PlansWhatThePlanCommandPrints) {
       {{{"warp", "iso"}, {"bound", "dop26"}}, "--warp iso --bound dop26"},
       {{{"compositor", "extended"}}, "--compositor extended"},
       {{{"shadow-map-px", 3}, {"size", "320x240"}}, "--shadow-map-px 3 --size 320x240"},
+      {{{"regroup", "amortised"}, {"regroup-dwell", 2}}, "--regroup amortised --regroup-dwell 2"},
+      {{{"visibility", "none,none,frustum"}}, "--visibility none,none,frustum"},
       {Json::object(), ""}};
   std::set<std::string> plans;
   for (const auto& [settings, words] : cases) {
@@ -83,6 +86,53 @@ TEST_F(View, PlansWhatThePlanCommandPrints) {
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_TRUE(view->lines(body({{"settings", {{"size", "160x120"}, {"resolution", 0.5}}}})).body ==
               read("r/decisions.jsonl"));
+}
+
+TEST_F(View, PlansPartsInSharedBuffersAsThePlanCommandDoes) {
+  std::string plain = kPassing;  // without shadows, which have sprites of their own
+  for (const std::string of_shadows : {", casts_shadow: true", ", shading: {shadows: {}}"})
+    plain.erase(plain.find(of_shadows), of_shadows.size());
+  write("plain.yaml", plain);
+  const auto view = opened("plain.yaml");
+  const Json settings = {
+      {"policy", "predictive"}, {"lookahead", 8}, {"tree-k", 2}, {"joining", "copy"}, {"hold", 3}};
+  const std::string plan =
+      planned("--policy predictive --lookahead 8 --tree-k 2 --joining copy", "plain.yaml");
+  EXPECT_TRUE(view->lines(body({{"settings", settings}})).body == plan);
+  EXPECT_FALSE(plan.empty());
+  const Json frame = answer(view->frame(body({{"settings", settings}, {"frame", 17}})))["columns"];
+  EXPECT_EQ(frame["layer"].size(), 2u);
+  const ViewAnswer picture = view->picture(body({{"settings", settings}, {"frame", 17}, {"mode", "shown"}}));
+  EXPECT_EQ(picture.status, 200) << picture.body.substr(0, 200);
+}
+
+TEST_F(View, PicturesOfSpritesAreRefusedWhereThereAreNone) {
+  const auto view = opened("passing.yaml");
+  for (const std::string mode : {"age", "depth"}) {
+    const Json request = {{"settings", {{"policy", "direct"}}}, {"frame", 3}, {"mode", mode}};
+    EXPECT_EQ(answer(view->picture(body(request)), 422)["error"],
+              "policy is 'direct', must be one with sprites: '" + mode + "' is a picture of them");
+    EXPECT_EQ(view->picture(body({{"frame", 3}, {"mode", mode}})).status, 200);
+  }
+}
+
+TEST_F(View, EveryOptionThatThePageMaySetHasAControl) {
+  CLI::App command;
+  CommandLine line;
+  add_decision_options(command, line, "flights", "out");
+  add_drawing_options(command, line);
+  const std::vector<ViewControl> controls = view_controls(command);
+  std::set<std::string> shown;
+  for (const ViewControl& control : controls) shown.insert(control.option);
+  EXPECT_EQ(shown, std::set<std::string>(settable_options().begin(), settable_options().end()));
+  for (const ViewControl& control : controls) {
+    if (control.option == "samples") {
+      EXPECT_THAT(control.words, testing::ElementsAre("1", "4", "16"));
+    }
+    if (control.option == "visibility") {
+      EXPECT_THAT(control.words, testing::Contains("cto,eye,eye"));
+    }
+  }
 }
 
 TEST_F(View, SlicesAndFramesHoldTheNumbersOfTheLines) {

@@ -142,9 +142,7 @@ TEST(AmortisedExperiment, NoFixedGroupingIsPlannedCheaperThanTheFloor) {
     ++fixed;
   }
   EXPECT_EQ(fixed, 2);
-  std::ostringstream out;
-  print_report(experiment, out);
-  EXPECT_THAT(out.str(), HasSubstr("best of all groupings: of 2 that were planned"));
+  EXPECT_THAT(plain_text(page_of(experiment)), HasSubstr("best of all groupings: of 2 that were planned"));
 }
 
 // --- [D95] ---

@@ -52,6 +52,57 @@ TEST(Html, FiguresAreInsideAndKeepTheirOwnIds) {
   EXPECT_THROW(html(page, folder.path()), OutputError);
 }
 
+TEST(Html, PointsAndRowsOpenWhatTheyStandFor) {
+  const tests::TemporaryFolder folder;
+  folder.write("a.svg", "<svg><g/></svg>");
+  Page page;
+  page.blocks = {Figure{"a.svg", "both", {{10, 20.25, "at \"4\" px", "runs/a.html"}}},
+                 PageTable{{"run", "n"}, {{"a", "1"}, {"b", "2"}}, 1, {"runs/a.html", ""}}};
+  const std::string text = html(page, folder.path());
+  EXPECT_THAT(text,
+              HasSubstr("<svg role=\"group\" aria-label=\"both\"><g/><a href=\"runs/a.html\" aria-label=\"at "
+                        "&quot;4&quot; px\"><circle cx=\"10.0\" cy=\"20.2\" r=\"8\"/>"));
+  EXPECT_THAT(text, HasSubstr("<th scope=\"row\"><a href=\"runs/a.html\">a</a></th>"));
+  EXPECT_THAT(text, HasSubstr("<th scope=\"row\">b</th>"));
+}
+
+TEST(Html, PicturesOfPixelsAreInside) {
+  const tests::TemporaryFolder folder;
+  folder.write("a.png", "Man");
+  Page page;
+  page.blocks = {Figure{"a.png", "a \"sheet\""}};
+  EXPECT_THAT(html(page, folder.path()),
+              HasSubstr("<img alt=\"a &quot;sheet&quot;\" src=\"data:image/png;base64,TWFu\">"));
+}
+
+TEST(WritePage, HasTheVerdictOnTop) {
+  const tests::TemporaryFolder folder;
+  Page page = example();
+  page.verdict = "1 < 2";
+  page.file = "x.html";
+  write_page(page, folder.path());
+  const std::string text = folder.read("x.html");
+  EXPECT_LT(text.find("<p class=\"verdict\" id=\"verdict\">1 &lt; 2</p>"), text.find("<main"));
+}
+
+TEST(PlainText, AHeadingStandsOnItsWordsAndTheVerdictIsLast) {
+  Page page = example();
+  page.verdict = "so is best";
+  page.blocks.push_back(Verbatim{"a: 1\nb: 2\n"});
+  page.blocks.push_back(Figure{"nowhere.svg", "not in a terminal"});
+  EXPECT_EQ(
+      plain_text(page),
+      "numbers\na \"quoted\" <tag>\ncurve       rate\nso | soi     1.5\nµ          20.25\n\n    a: 1\n    b: "
+      "2\n\nso is best\n");
+}
+
+TEST(PlainText, WordsOfStrangersMoveNoCursor) {
+  Page page;
+  page.verdict = "a\x1b[2J";
+  page.blocks = {Paragraph{"b\x1b\nc"}};
+  EXPECT_EQ(plain_text(page), "b\\x1b\nc\n\na\\x1b[2J\n");
+}
+
 TEST(PlainText, ColumnsLineUpByCodePoints) {
   const PageTable table{{"µs", "n"}, {{"é", "1"}, {"abc", "100"}}, 1};
   EXPECT_EQ(plain_text(table), "µs     n\né      1\nabc  100\n");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/pictures/plot_layout.h"
+#include "sequences/pictures/plot_links.h"
 
 #include <cmath>
 #include <limits>
@@ -149,6 +150,21 @@ TEST(FittedText, IsCutAtASignAndSaysSo) {
   EXPECT_THAT(cut, testing::EndsWith("…"));
   EXPECT_EQ(cut.size() % 2, 1u);  // whole signs of two bytes, and one of three
   EXPECT_EQ(fitted_text("much too long", 10, 0), "…");
+}
+
+TEST(LinksOf, LieWhereThePointsAreDrawn) {
+  Plot plot{"t", {"x", "", true}, {"y", "", false}, {}};
+  plot.series = {{"a", {{1, 5}, {0, 6}, {10, 7}}}, {"b", {{3, 1}}}};
+  plot.series[0].links = {
+      {"first", "1.html"}, {"has no place on a logarithmic axis", "2.html"}, {"opens nothing", ""}};
+  const PlotFiles files{false, 640, 480};
+  const std::vector<FigureLink> links = links_of(plot, files);
+  ASSERT_EQ(links.size(), 1u);
+  EXPECT_EQ(links[0].href, "1.html");
+  EXPECT_EQ(links[0].words, "first");
+  const layers::dvec2 at = plot_layout(plot, files).pixel({1, 5});
+  EXPECT_EQ(links[0].x_px, at.x);
+  EXPECT_EQ(links[0].y_px, at.y);
 }
 
 }  // namespace

@@ -23,6 +23,7 @@ function layOut(runs) {
                  layers: element("section", {id: "layers-panel", class: "panel scrolls", tabindex: "0", "aria-label": "layers of the frame"}),
                  properties: element("section", {id: "properties", class: "panel", "aria-label": "decision", "aria-live": "polite"}),
                  spans: element("section", {id: "spans", class: "panel scrolls", tabindex: "0", "aria-label": "decisions of the layer"}),
+                 goTo: element("input", {type: "number", id: "go-to", min: runs[0].first, max: runs[0].last, step: 1}),
                  curveTools: element("div", {class: "tools"})};
   document.getElementById("instrument").append(
     element("div", {class: "left"}, parts.tools, element("div", {class: "map"}, canvas), legend(), parts.curveTools, parts.curve, parts.spans),
@@ -35,12 +36,18 @@ function addTools(parts, runs, map, curves) {
   const modes = {reason: "reason", error: "error"};
   if (runs.length > 1) modes.difference = "A against B";
   const zoom = (text, label, act) => element("button", {type: "button", "aria-label": label, title: label, onclick: act}, text);
+  // Enter: the first layer that was found.
+  const chooseFirst = (event) => {
+    if (event.key === "Enter" && map.rows.length > 0) selection.set({layer: map.run.layers[map.rows[0]]});
+  };
+  parts.goTo.addEventListener("change", () => selection.set({frame: Math.max(map.run.first, Math.min(map.run.last, Math.round(Number(parts.goTo.value))))}));
   const middle = () => (map.shown.from + map.shown.to) / 2;
   parts.tools.append(
     ...(runs.length > 1 ? [choice("run", {0: `A: ${runs[0].folder}`, 1: `B: ${runs[1].folder}`}, "0", (v) => selection.set({run: Number(v)}))] : []),
     choice("rows by", {cost: "cost", rate: "rate", error: "error", order: "order", name: "name", group: "group of names"}, "cost", (v) => { map.by = v; again(); }),
     choice("colours", modes, "reason", (v) => { map.mode = v; again(); }),
-    element("label", {}, "find ", element("input", {type: "search", id: "find", size: "10", oninput: (e) => { map.filter = e.target.value; again(); }})),
+    element("label", {}, "find ", element("input", {type: "search", id: "find", size: "10", oninput: (e) => { map.filter = e.target.value; again(); }, onkeydown: chooseFirst})),
+    element("label", {}, "frame ", parts.goTo),
     element("span", {class: "buttons"}, zoom("−", "see more frames", () => map.zoom(2, middle())), zoom("+", "see fewer frames", () => map.zoom(0.5, middle())),
             zoom("all", "see all frames", () => map.show(map.whole.from, map.whole.to))));
   const names = Object.fromEntries(curvesOf(runs[0]).map((key) => [key, kCurves[key].label]));
@@ -71,22 +78,35 @@ class Instrument {
     this.map.paint();
     if (this.curves.graph) this.curves.graph.resize(this.map.width, 110);
   }
-  // What depends on the selection.
+  // What depends on the selection: the decision at once, all that is beside it when the page has shown that, once for many
+  // moves.
   draw() {
     const clicked = performance.now();
     if (this.drawnRun !== selection.run) { this.drawnRun = selection.run; this.map.rebuild(); this.curves.draw(); }
     this.map.reveal();
-    this.frame.draw(this.map.run);
     this.properties.draw();
+    this.curves.mark();
+    this.parts.goTo.value = selection.frame;
+    document.body.dataset.click_ms = performance.now() - clicked;
+    if (this.waiting) return;
+    this.waiting = true;
+    (document.hidden ? setTimeout : requestAnimationFrame)(() => setTimeout(() => this.drawBeside()));
+  }
+  drawBeside() {
+    this.waiting = false;
+    this.frame.draw(this.map.run);
     this.layers.draw();
     this.spans.draw(this.map.run);
-    this.curves.mark();
-    document.body.dataset.click_ms = performance.now() - clicked;
+    document.body.dataset.beside = `${selection.frame} ${selection.layer}`;
+  }
+  drawAll() {
+    this.draw();
+    this.drawBeside();
   }
   redrawAll() {
     themeColors.clear();
     this.map.rebuild();
     this.curves.draw();
-    this.draw();
+    this.drawAll();
   }
 }

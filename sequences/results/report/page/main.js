@@ -11,10 +11,10 @@ async function start() {
   Object.assign(selection, worst, selection.fromAddress(runs));
   instrument.map.rebuild();
   await instrument.curves.draw();
-  instrument.draw();
+  instrument.drawAll();
   document.body.dataset.painted_ms = performance.now() - began;
   for (const run of runs) await run.decisions.needAll();
-  instrument.draw();
+  instrument.drawAll();
   document.body.dataset.ready_ms = performance.now() - began;
 }
 

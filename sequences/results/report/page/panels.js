@@ -121,21 +121,34 @@ class PropertiesPanel {
 
 class LayersPanel {
   constructor(box, map) {
-    Object.assign(this, {box, map});
+    Object.assign(this, {box, map, lines: []});
+  }
+  // A line for each row of the map; what is in it is filled in anew for each frame.
+  layOut() {
+    const run = this.map.run;
+    this.rows = this.map.rows;
+    this.caption = element("caption");
+    this.lines = this.rows.slice(0, 400).map((layer) => {
+      const name = run.layers[layer], swatch = element("span", {class: "swatch", "aria-hidden": "true"});
+      const link = element("a", {class: "name"}, element("bdi", {}, name)), done = element("td");
+      const numbers = ["geometric_px", "cost_pixels"].map((column) => ({column, cell: element("td", {class: "n"})}));
+      return {name, swatch, link, done, numbers, line: element("tr", {}, element("th", {scope: "row"}, swatch, link), done, ...numbers.map((n) => n.cell))};
+    });
+    const head = element("thead", {}, element("tr", {}, ...["layer", "done", "error px", "texels"].map((w, k) => element("th", {scope: "col", class: k > 1 ? "n" : null}, w))));
+    this.box.replaceChildren(element("table", {class: "properties"}, this.caption, head, element("tbody", {}, ...this.lines.map((l) => l.line))));
   }
   draw() {
     const run = this.map.run, frame = selection.frame;
-    const lines = this.map.rows.slice(0, 400).map((layer) => {
-      const name = run.layers[layer], row = run.row(name, frame);
-      const swatch = element("span", {class: "swatch", "aria-hidden": "true"});
-      swatch.style.background = color(run.kind(row));
-      const link = element("a", {href: selection.link(frame, name), class: "name"}, element("bdi", {}, name));
-      return element("tr", name === selection.layer ? {"aria-current": "true"} : {},
-                     element("th", {scope: "row"}, swatch, link), element("td", {}, row < 0 ? "–" : kKindWords[run.kind(row)]),
-                     element("td", {class: "n"}, numberElement(run.value("geometric_px", row))),
-                     element("td", {class: "n"}, numberElement(run.value("cost_pixels", row))));
-    });
-    const head = element("thead", {}, element("tr", {}, ...["layer", "done", "error px", "texels"].map((w, k) => element("th", {scope: "col", class: k > 1 ? "n" : null}, w))));
-    this.box.replaceChildren(element("table", {class: "properties"}, element("caption", {}, `Layers in frame ${frame}`), head, element("tbody", {}, ...lines)));
+    if (this.rows !== this.map.rows) this.layOut();
+    this.caption.textContent = `Layers in frame ${frame}`;
+    for (const {name, swatch, link, done, numbers, line} of this.lines) {
+      const row = run.row(name, frame), kind = run.kind(row);
+      swatch.style.background = color(kind);
+      link.setAttribute("href", selection.link(frame, name));
+      done.textContent = row < 0 ? "–" : kKindWords[kind];
+      for (const {column, cell} of numbers) cell.replaceChildren(numberElement(run.value(column, row)));
+      if (name === selection.layer) line.setAttribute("aria-current", "true");
+      else line.removeAttribute("aria-current");
+    }
   }
 }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include "sequences/pictures/page_text.h"
 #include "sequences/results/report/packed_table.h"
 
 namespace talisman::sequences {

@@ -7,6 +7,7 @@
 
 #include "regulator/profile.h"
 #include "sequences/files/errors.h"
+#include "sequences/files/number_text.h"
 #include "sequences/pictures/page_assets.h"
 #include "sequences/results/report/verdict.h"
 #include "tests/sequences/commands/tool.h"
@@ -88,6 +89,21 @@ TEST_F(Report, TheVerdictSaysWhatReferenceWouldTake) {
   EXPECT_THAT(verdict_on(run), HasSubstr(words));
   EXPECT_THAT(verdict_on(run), HasSubstr("picture error not measured"));
   EXPECT_LT(ms, reference_ms);
+}
+
+TEST_F(Report, TheVerdictNamesTheDearestLayer) {
+  plan("o");
+  std::map<std::string, double> texels;
+  double all = 0;
+  for (const Json& line : lines("o/decisions.jsonl")) {
+    const double drawn = line["decision"] == "rerender" ? line["cost"]["pixels"].get<double>() : 0;
+    texels[line["layer"]] += drawn, all += drawn;
+  }
+  const auto dearest = std::max_element(texels.begin(), texels.end(),
+                                        [](const auto& a, const auto& b) { return a.second < b.second; });
+  EXPECT_THAT(verdict_on(read_report_run(path("o"), false)),
+              HasSubstr("; " + dearest->first + " is the dearest layer, " + percent_of(dearest->second, all) +
+                        " % of these texels"));
 }
 
 TEST_F(Report, OfReferenceTakesWhatReferenceTakes) {
