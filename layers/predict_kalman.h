@@ -24,7 +24,7 @@ namespace talisman::layers {
 /// served as well, since its measurements hardly weigh less.
 struct KalmanNoise {
   double place_m = 2e-4;  ///< > 0; standard deviation of a measured place; more follows later and smoother
-  double turn_rad = 3.490658503988659e-4;  ///< > 0; of a measured rotation, 0.02°; likewise
+  double turn_rad = 3.4906585039886593e-4;  ///< > 0; of a measured rotation, 0.02°; likewise
   double jerk_m =
       50;  ///< > 0; m s⁻³ √s: root of the density of the change of acceleration; more follows sooner
   double jerk_rad = 300;  ///< > 0; rad s⁻³ √s; likewise

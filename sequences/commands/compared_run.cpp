@@ -19,37 +19,14 @@ namespace {
 using regulator::Policy;
 
 /// The options that decide, or say how what is decided is done: not where the results go.
-constexpr std::array kDecidingOptions = {"geometric-px",
-                                         "hold",
-                                         "stagger",
-                                         "blend",
-                                         "lookahead",
-                                         "predict",
-                                         "latency-ms",
-                                         "tree-k",
-                                         "joining",
-                                         "motion-norm",
-                                         "intervals",
-                                         "adaptive",
-                                         "photometric",
-                                         "light-angle-deg",
-                                         "shadow-map-px",
-                                         "turned-px",
-                                         "color-warp",
-                                         "budget-ms",
-                                         "budget-polygons",
-                                         "budget-pixels",
-                                         "budget-chunks",
-                                         "min-resolution",
-                                         "cutoff-px",
-                                         "choice",
-                                         "depth-complexity",
-                                         "warp",
-                                         "bound",
-                                         "material-points",
-                                         "cycles",
-                                         "compositor",
-                                         "expected-reuse"};
+constexpr std::array kDecidingOptions = {
+    "geometric-px",  "hold",           "stagger",         "blend",           "lookahead",
+    "predict",       "latency-ms",     "tree-k",          "joining",         "motion-norm",
+    "intervals",     "adaptive",       "photometric",     "light-angle-deg", "shadow-map-px",
+    "turned-px",     "color-warp",     "budget-ms",       "budget-polygons", "budget-pixels",
+    "budget-chunks", "min-resolution", "cutoff-px",       "choice",          "depth-complexity",
+    "warp",          "bound",          "material-points", "cycles",          "compositor",
+    "expected-reuse"};
 
 const char* main_option(Policy policy) {
   switch (policy) {

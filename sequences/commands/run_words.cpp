@@ -55,7 +55,8 @@ void add_policy(CLI::App& command, CommandLine& line) {
           std::to_string(kUsual.lookahead.frames))
       .option("--predict", line.predict,
               alternatives(kPredictionWords) +
-                  ": what policies lookahead and predictive know of frames ahead, and what a late run expects of the camera",
+                  ": what policies lookahead and predictive know of frames ahead, and what a late run "
+                  "expects of the camera",
               "known; with --latency-ms: held")
       .option("--latency-ms", line.latency_ms,
               "RENDER or RENDER,WARP: decisions and sprites know the camera's poses of so long ago; sprites "

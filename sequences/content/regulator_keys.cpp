@@ -67,7 +67,8 @@ Table<LookaheadOptions> lookahead_keys() {
            "slice, "
            "a power of `tree_k`")
       .key("predict", &L::predict, prediction(), "",
-           "policies lookahead and predictive: motion ahead is known, or expected: all stays as it is, goes on with its "
+           "policies lookahead and predictive: motion ahead is known, or expected: all stays as it is, goes "
+           "on with its "
            "velocity, or "
            "with its acceleration");
 }

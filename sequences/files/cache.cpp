@@ -62,8 +62,7 @@ std::string write_entry(const std::string& path, const Header& header,
   const File file(std::fopen(path.c_str(), "wbx"));
   if (!file) return std::strerror(errno);
   const bool written = std::fwrite(&header, sizeof header, 1, file.get()) == 1 &&
-                       (content.empty() ||
-                        std::fwrite(content.data(), content.size(), 1, file.get()) == 1) &&
+                       (content.empty() || std::fwrite(content.data(), content.size(), 1, file.get()) == 1) &&
                        std::fflush(file.get()) == 0;
   return written ? std::string() : std::strerror(errno);
 }

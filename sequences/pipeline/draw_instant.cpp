@@ -25,7 +25,8 @@ class Judge {
         layer_(layer),
         frame_rendered_(frame_rendered),
         limit_px_(most_px(pipeline, state.layers[layer])) {
-    if (!predicts(pipeline) && !is_late(pipeline) && !pipeline.culling) rest_.emplace(pipeline.scene, state.layers[layer]);
+    if (!predicts(pipeline) && !is_late(pipeline) && !pipeline.culling)
+      rest_.emplace(pipeline.scene, state.layers[layer]);
   }
 
   bool serves(int instant, int frame) {

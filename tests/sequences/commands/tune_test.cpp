@@ -124,8 +124,8 @@ TEST_F(Tune, BytesDoNotDependOnThreads) {
   tuned("--flip 0.02 --threads 3");
   EXPECT_EQ(read("t/tune.json"), one);
   EXPECT_EQ(read("t/tune.csv"), csv);
-  EXPECT_EQ(files_in("t"),
-            (std::set<std::string>{"tune.csv", "tune.json", "tune-curve.csv", "tune-curve.svg"}));
+  EXPECT_EQ(files_in("t"), (std::set<std::string>{"tune.csv", "tune.html", "tune.json", "tune-curve.csv",
+                                                  "tune-curve.svg"}));
 }
 
 TEST_F(Tune, WhatWasFoundStaysWhenItIsStopped) {

@@ -90,10 +90,17 @@ TEST(PlainText, AHeadingStandsOnItsWordsAndTheVerdictIsLast) {
   page.verdict = "so is best";
   page.blocks.push_back(Verbatim{"a: 1\nb: 2\n"});
   page.blocks.push_back(Figure{"nowhere.svg", "not in a terminal"});
-  EXPECT_EQ(
-      plain_text(page),
-      "numbers\na \"quoted\" <tag>\ncurve       rate\nso | soi     1.5\nµ          20.25\n\n    a: 1\n    b: "
-      "2\n\nso is best\n");
+  EXPECT_EQ(plain_text(page), R"(numbers
+a "quoted" <tag>
+curve      rate
+so | soi    1.5
+µ         20.25
+
+    a: 1
+    b: 2
+
+so is best
+)");
 }
 
 TEST(PlainText, WordsOfStrangersMoveNoCursor) {
