@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <glm/geometric.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
 namespace talisman::layers {
@@ -33,6 +34,14 @@ std::optional<Placed> placed(const dmat4& m) {
   const dmat3 stretch = transpose(r) * linear;
   if (!(std::fabs(stretch[2][2]) > kFlatStretch * longest)) return std::nullopt;
   return Placed{r, stretch, dvec3(m[3])};
+}
+
+dvec3 rotation_vector(const dmat3& rotation) {
+  glm::dquat q = glm::normalize(glm::quat_cast(rotation));
+  if (q.w < 0) q = -q;
+  const double sine = std::hypot(q.x, q.y, q.z);
+  if (sine == 0) return dvec3{0};
+  return dvec3(q.x, q.y, q.z) * (2 * std::atan2(sine, q.w) / sine);
 }
 
 }  // namespace talisman::layers

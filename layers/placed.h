@@ -18,6 +18,9 @@ struct Placed {
 /// The rotation is found by orthonormalising the columns (Gram & Schmidt). Empty for a matrix that is flat.
 std::optional<Placed> placed(const dmat4& m);
 
+/// Axis times angle of a rotation, by the shorter way round: |angle| ≤ π.
+dvec3 rotation_vector(const dmat3& rotation);
+
 bool is_finite(const dmat4& m);
 
 }  // namespace talisman::layers

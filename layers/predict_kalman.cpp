@@ -68,15 +68,6 @@ dvec3 filtered(const Measured& values, double step_s, double horizon_s, double m
   return ahead;
 }
 
-/// Axis times angle of the shorter way round.
-dvec3 log_of(const dmat3& rotation) {
-  glm::dquat q = glm::normalize(glm::quat_cast(rotation));
-  if (q.w < 0) q = -q;
-  const double sine = std::hypot(q.x, q.y, q.z);
-  if (sine == 0) return dvec3{0};
-  return dvec3(q.x, q.y, q.z) * (2 * std::atan2(sine, q.w) / sine);
-}
-
 /// The same rotation, by the way round that is nearest to `to`.
 dvec3 nearest_way(const dvec3& turn, const dvec3& to) {
   const double angle = glm::length(turn);
@@ -111,7 +102,7 @@ dmat4 predict_kalman(std::span<const dmat4> past, double step_s, double horizon_
     const std::optional<Placed> then = is_finite(past[k]) ? placed(past[k]) : std::nullopt;
     if (!then || then->stretch[2][2] * now->stretch[2][2] < 0) continue;
     places[k] = then->origin - now->origin;
-    turn_after = nearest_way(log_of(then->rotation * glm::transpose(now->rotation)), turn_after);
+    turn_after = nearest_way(rotation_vector(then->rotation * glm::transpose(now->rotation)), turn_after);
     turns[k] = turn_after;
   }
   const dvec3 turn = filtered(turns, step_s, horizon_s, noise.turn_rad, noise.jerk_rad);

@@ -6,9 +6,9 @@
 #include <limits>
 #include <map>
 
-#include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
 
+#include "layers/placed.h"
 #include "sequences/experiments/latency/judge.h"
 #include "sequences/pipeline/blended_sprites.h"
 #include "sequences/pipeline/latency/last_warp.h"
@@ -302,10 +302,7 @@ class WholeWays {
 
 /// Axis times angle from one camera to another, in the space of the first.
 dvec3 turn_between(const CameraState& from, const CameraState& to) {
-  glm::dquat q = glm::quat_cast(glm::transpose(dmat3(from.world_from_camera)) * dmat3(to.world_from_camera));
-  if (q.w < 0) q = -q;
-  const double sine = std::hypot(q.x, q.y, q.z);
-  return sine > 0 ? dvec3(q.x, q.y, q.z) * (2 * std::atan2(sine, q.w) / sine) : dvec3(0);
+  return layers::rotation_vector(glm::transpose(dmat3(from.world_from_camera)) * dmat3(to.world_from_camera));
 }
 
 ExpectedPose expected_pose(const Stage& stage, const regulator::LatencyOptions& latency,

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 
+#include "sequences/content/seams.h"
 #include "sequences/experiments/setting_file.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/folders.h"
@@ -25,7 +26,7 @@ void store_run(const Sequence& sequence, const Settings& settings, const Experim
   options.plan_only = options.changes = options.force = true;
   options.progress = ProgressKind::None;
   const std::atomic<bool> never = false;
-  run(sequence, settings, options, never);
+  run(with_seams_for(sequence, settings), settings, options, never);
   write_report({folder}, page, false);
   std::error_code ignored;
   std::filesystem::remove_all(folder, ignored);

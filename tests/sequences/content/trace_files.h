@@ -45,6 +45,19 @@ inline std::string numbers(const std::vector<double>& values, const char* betwee
   return text;
 }
 
+/// The motion as a TUM file, a pose each millisecond from 0 to `last_ms`.
+inline std::string tum_each_ms(const std::function<KnownPose(double)>& pose_at, int last_ms) {
+  std::string text;
+  for (int ms = 0; ms <= last_ms; ++ms) {
+    const double t_s = 0.001 * ms;
+    const KnownPose pose = pose_at(t_s);
+    const dvec3& p = pose.position;
+    const glm::dquat& q = pose.rotation;
+    text += numbers({t_s, p.x, p.y, p.z, q.x, q.y, q.z, q.w}, " ") + "\n";
+  }
+  return text;
+}
+
 struct WrittenTrace {
   int poses = 61;
   double fps = 50;

@@ -40,14 +40,7 @@ constexpr const char* kRoom =
 
 DisplayedExperiment shown(const std::function<tests::KnownPose(double)>& pose_at, int every = 30) {
   const TemporaryFolder folder;
-  std::string trace;
-  for (int k = 0; k <= 1100; ++k) {
-    const tests::KnownPose pose = pose_at(0.001 * k);
-    const dvec3& p = pose.position;
-    const glm::dquat& q = pose.rotation;
-    trace += tests::numbers({0.001 * k, p.x, p.y, p.z, q.x, q.y, q.z, q.w}, " ") + "\n";
-  }
-  folder.write("head.tum", trace);
+  folder.write("head.tum", tests::tum_each_ms(pose_at, 1100));
   const Sequence sequence = load_sequence(folder.write("s.yaml", kRoom));
   return measure_displayed(sequence, own_settings(sequence), {6, 29, every}, 0, ProgressKind::None);
 }

@@ -28,14 +28,7 @@ constexpr const char* kThings =
 /// A camera that is traced at 1 kHz.
 LatencyCurve curve_of(const std::function<tests::KnownPose(double)>& pose_at, double warp_ms) {
   const TemporaryFolder folder;
-  std::string trace;
-  for (int k = 0; k <= 2100; ++k) {
-    const tests::KnownPose pose = pose_at(0.001 * k);
-    const dvec3& p = pose.position;
-    const glm::dquat& q = pose.rotation;
-    trace += tests::numbers({0.001 * k, p.x, p.y, p.z, q.x, q.y, q.z, q.w}, " ") + "\n";
-  }
-  folder.write("head.tum", trace);
+  folder.write("head.tum", tests::tum_each_ms(pose_at, 2100));
   const Sequence sequence = load_sequence(folder.write(
       "s.yaml", std::string(kThings) +
                     "camera: {fov_deg: 60, near_m: 0.1, far_m: 100, trace: {file: head.tum, frame: gl}}\n"));

@@ -6,7 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "sequences/experiments/regulator/setting_run.h"
+#include "sequences/experiments/regulator/stored_runs.h"
 #include "sequences/experiments/tuning/thresholds.h"
+#include "sequences/pictures/page_assets.h"
 #include "sequences/results/planned.h"
 #include "tests/sequences/temporary_folder.h"
 #include "tests/support/sequences.h"
@@ -15,6 +17,7 @@ namespace talisman::sequences {
 namespace {
 
 using ::testing::Gt;
+using ::testing::HasSubstr;
 using tests::TemporaryFolder;
 
 /// Two tiles that meet at x = 0, and a camera that flies over the edge.
@@ -107,6 +110,21 @@ TEST_F(Seamed, WhatIfPlansAndTriedThresholdsHaveTheirs) {
   const Summary alone = planned(read(6), at(sequence, 6), {0, 11});
   EXPECT_EQ(planned(sequence, at(sequence, 6), {0, 11}).pixels_rendered(), alone.pixels_rendered());
   expect_same(with_thresholds(sequence, at(sequence, 1), {6, {}}).sequence, read(6));
+}
+
+TEST_F(Seamed, StoredRunOfAPointCountsWhatThePointDoes) {
+  if (!has_report()) GTEST_SKIP() << "a build without the report";
+  const Sequence sequence = read({});
+  RegulatorReport report;
+  report.given = at(sequence, 1);
+  report.frames = {0, 11, 1};
+  report.settings.resize(1);
+  report.settings[0].setting = {"threshold", "px", 6, at(sequence, 6).regulator};
+  store_runs(sequence, report, folder_.path());
+  const Summary alone = planned(read(6), at(sequence, 6), {0, 11});
+  EXPECT_NE(alone.polygons_rendered(), planned(sequence, at(sequence, 1), {0, 11}).polygons_rendered());
+  EXPECT_THAT(folder_.read(report.runs.at(0)),
+              HasSubstr("Would draw " + std::to_string(alone.polygons_rendered()) + " of "));
 }
 
 }  // namespace

@@ -108,7 +108,9 @@ TEST(MotionGroups, TooManyAndALayerBesideThemAreRefused) {
   EXPECT_THAT(with_parts, ::testing::HasSubstr("swarm.yaml:7"));
   const std::string twice =
       motion_refusal(swarm_file(folder, "layers: {auto: motion}\nlayers:\n  - {name: a, parts: [\"*\"]}"));
-  EXPECT_THAT(twice, ::testing::HasSubstr("each key only once"));
+  EXPECT_THAT(twice,
+              ::testing::HasSubstr(
+                  "swarm.yaml:9: layers is a list of 1, rule: each key only once, and it is in line 7"));
 }
 
 }  // namespace
