@@ -33,6 +33,12 @@ struct MeanQuality {
   double psnr_db() const { return mse > 0 ? 10 * std::log10(255.0 * 255.0 / mse) : INFINITY; }
 };
 
+/// Pixels at edges that layers share, where what is behind them shows.
+struct OpenSeams {
+  std::int64_t pixels = 0, most = 0;  ///< in all frames, and in the worst of them
+  int worst_frame = -1;               ///< -1: none are open
+};
+
 /// Of a run that knows old poses only. Means: the sums.
 struct LatencyTotals {
   int frames = 0;
@@ -60,10 +66,6 @@ class FrameTotals {
   double slowest_sort_ms() const { return slowest_sort_ms_; }
   /// Empty where no frame was compared.
   std::optional<MeanQuality> quality(Quality FrameQuality::*which) const;
-  struct OpenSeams {
-    std::int64_t pixels = 0, most = 0;  ///< in all frames, and in the worst of them
-    int worst_frame = -1;               ///< -1: none are open
-  };
   const std::optional<OpenSeams>& open_seams() const { return open_seams_; }  ///< empty: were not counted
 
  private:

@@ -64,7 +64,7 @@ std::string quality_rows(const RunRow& run) {
 /// Empty where no layers share edges.
 std::string seam_row(const RunRow& run) {
   if (!run.sums.open_seams()) return {};
-  const FrameTotals::OpenSeams& open = *run.sums.open_seams();
+  const OpenSeams& open = *run.sums.open_seams();
   const std::string all =
       formatted("  %-30s %lld pixels", "open at shared edges", static_cast<long long>(open.pixels));
   return open.worst_frame < 0 ? all + "\n"

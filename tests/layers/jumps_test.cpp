@@ -18,7 +18,7 @@ Scene scene_of(TransformTrack track) {
   return scene;
 }
 
-TransformTrack jump_keys(std::vector<double> times, std::vector<double> x,
+TransformTrack jump_keys(std::vector<double> times, const std::vector<double>& x,
                          Interpolation interpolation = Interpolation::Linear) {
   TransformTrack track;
   track.translation.times_s = std::move(times);

@@ -83,14 +83,16 @@ std::string video_failure(const ChildResult& child) {
 }
 
 VideoFacts video_facts(const std::string& file) {
+  using namespace std::string_literals;
   refuse_playlist(file);
   std::vector<std::string> arguments = {"ffprobe", "-v", "error"};
   for (const std::string& argument : video_protocols()) arguments.push_back(argument);
-  for (const char* argument : {"-select_streams", "v:0", "-show_entries",
-                               "stream=codec_name,width,height,pix_fmt,color_space,color_range,color_"
-                               "transfer,r_frame_rate,avg_frame_rate"
-                               ":stream_tags=alpha_mode",
-                               "-of", "default=nw=1"})
+  const std::string asked =
+      "stream=codec_name,width,height,pix_fmt,color_space,color_range,color_transfer,r_frame_rate,avg_frame_"
+      "rate"
+      ":stream_tags=alpha_mode";
+  for (const std::string& argument :
+       {"-select_streams"s, "v:0"s, "-show_entries"s, asked, "-of"s, "default=nw=1"s})
     arguments.emplace_back(argument);
   arguments.push_back("file:" + file);
   ChildOptions options;

@@ -246,7 +246,7 @@ DepthPicture depth_picture(const chunker::PlanBuffer& buffer, layers::vec3 backg
     for (int x = 0; x < size.x; ++x) {
       const chunker::DepthChunk* depth = buffer.depth(y / kSide * buffer.chunks().x + x / kSide);
       if (depth == nullptr) continue;
-      const std::size_t texel = static_cast<std::size_t>(y % kSide * kSide + x % kSide);
+      const std::size_t texel = index_of({kSide, kSide}, x % kSide, y % kSide);
       if (!(depth->z[texel] > 0)) continue;
       picture.inverse_depth[index_of(size, x, y)] = depth->z[texel];
       picture.part[index_of(size, x, y)] = static_cast<std::int32_t>(depth->part[texel]);

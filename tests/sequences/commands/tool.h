@@ -84,7 +84,7 @@ class Tool : public ::testing::Test {
 
   /// Runs the tool, which gets the signal in the very operation that makes `file`: on any machine at the same instant.
   Outcome run_and_signal(const std::string& arguments, const std::string& file, int signal) const {
-    const Outcome outcome =
+    Outcome outcome =
         run(arguments, on_failing_disk("SIGNAL_AT='" + path(file) + "' SIGNAL=" + std::to_string(signal)));
     if (signal == SIGKILL) {
       EXPECT_EQ(outcome.exit_code, 128 + SIGKILL) << file << " was not made";

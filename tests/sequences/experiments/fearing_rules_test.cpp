@@ -10,7 +10,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-std::vector<SpeedUpCell> cells_with(std::vector<double> at_half, double all_moves = 0.9) {
+std::vector<SpeedUpCell> cells_with(const std::vector<double>& at_half, double all_moves = 0.9) {
   std::vector<SpeedUpCell> cells;
   int slice = 2;
   for (const double ours : at_half) {

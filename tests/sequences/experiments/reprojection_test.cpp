@@ -88,7 +88,7 @@ TEST(Reprojection, OfACameraThatTurnsIsExact) {
       const dvec2 p = dvec2(q) / q.z;
       const bool is_in = p.x >= 0 && p.y >= 0 && p.x <= kSize.x && p.y <= kSize.y;
       past_edge += !is_in;
-      const std::size_t at = static_cast<std::size_t>(y * kSize.x + x);
+      const std::size_t at = static_cast<std::size_t>(y) * kSize.x + x;
       ASSERT_EQ(!turned.is_hole(at), is_in);
       if (is_in) {
         EXPECT_LT(glm::distance(turned.source[at], p), 1e-6);
@@ -118,7 +118,7 @@ TEST(Reprojection, LeavesHolesWhereNothingWasSeen) {
   for (int y = 0; y < kSize.y; ++y) {
     int inner = 0, at_edge = 0;
     for (int x = 0; x < kSize.x; ++x) {
-      const std::size_t at = static_cast<std::size_t>(y * kSize.x + x);
+      const std::size_t at = static_cast<std::size_t>(y) * kSize.x + x;
       if (open.is_hole(at)) {
         (x > kSize.x - 3 ? at_edge : inner) += 1;
         continue;

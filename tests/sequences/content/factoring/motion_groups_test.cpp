@@ -71,7 +71,7 @@ TEST(MotionGroups, NothingMovesAndOnePart) {
 }
 
 std::string swarm_file(const tests::TemporaryFolder& folder, const std::string& layers) {
-  const std::string path = folder.path() + "/swarm.yaml";
+  std::string path = folder.path() + "/swarm.yaml";
   std::ofstream(path) << "name: swarm\nframes: 8\nfps: 30\ndisplay: [64, 48]\n"
                          "swarm: {count: 20, shape: block, cube: 8, moving: 25, seed: 3}\n"
                          "camera: {position: [0, 0, 14], look_at: [0, 0, 0]}\n"
