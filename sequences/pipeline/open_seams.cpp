@@ -46,13 +46,14 @@ bool is_inside(const AlphaPlane& whole, int x, int y, int within) {
   return true;
 }
 
-/// The pixels whose middle is within reach of the cut, each with how far that is.
+/// The pixels whose middle is within reach of the cut, without those at the border.
 template <typename Visit>
-void for_each_near(const CutLine& cut, int width, int height, const Visit& visit) {
+void for_each_near(const CutLine& cut, int width, int height, int border_px, const Visit& visit) {
   const layers::dvec2 lo = glm::min(cut.a_px, cut.b_px) - cut.within_px,
                       hi = glm::max(cut.a_px, cut.b_px) + cut.within_px;
-  const auto clamped = [](double v, int most) {
-    return static_cast<int>(std::clamp(std::floor(v), 0.0, most * 1.0));
+  const auto clamped = [border_px](double v, int size) {
+    const double most = std::max(size - border_px, border_px);
+    return static_cast<int>(std::clamp(std::floor(v), border_px * 1.0, most));
   };
   for (int y = clamped(lo.y, height); y < clamped(hi.y + 1, height); ++y)
     for (int x = clamped(lo.x, width); x < clamped(hi.x + 1, width); ++x)
@@ -61,12 +62,18 @@ void for_each_near(const CutLine& cut, int width, int height, const Visit& visit
 
 }  // namespace
 
-std::int64_t open_pixels(const AlphaPlane& shown, const AlphaPlane& whole, std::span<const CutLine> cuts) {
+int border_width_px(double uncovered_px) {
+  if (!(uncovered_px > 0)) return 0;
+  return 1 + static_cast<int>(std::ceil(std::min(uncovered_px, 1e6)));
+}
+
+std::int64_t open_pixels(const AlphaPlane& shown, const AlphaPlane& whole, std::span<const CutLine> cuts,
+                         int border_px) {
   TALISMAN_CHECK_EQ(shown.alpha.size(), whole.alpha.size());
   std::vector<char> counted(whole.alpha.size(), 0);
   std::int64_t open = 0;
   for (const CutLine& cut : cuts)
-    for_each_near(cut, whole.width, whole.height, [&](int x, int y) {
+    for_each_near(cut, whole.width, whole.height, border_px, [&](int x, int y) {
       const std::size_t at = static_cast<std::size_t>(y) * whole.width + x;
       if (counted[at] != 0 || shown.alpha[at] + kOpenAlpha >= whole.alpha[at]) return;
       if (!is_inside(whole, x, y, static_cast<int>(std::ceil(cut.within_px)))) return;
@@ -126,7 +133,8 @@ std::optional<std::int64_t> SeamCounter::open_in(const PipelineState& state, con
       draw_in_one_pass({pipeline_, pipeline_.authored, maps, prepared, frame}, layers_, all_of_it);
   chunker::PlacedSprite whole;
   whole.sprite = &direct.sprite;
-  return open_pixels(alpha_of(sprites, display_px), alpha_of({&whole, 1}, display_px), cuts);
+  return open_pixels(alpha_of(sprites, display_px), alpha_of({&whole, 1}, display_px), cuts,
+                     border_width_px(pipeline_.settings.regulator.thresholds.uncovered_px));
 }
 
 }  // namespace talisman::sequences

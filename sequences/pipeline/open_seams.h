@@ -10,7 +10,8 @@
 ///
 /// so it does not matter what shows through, the background or another layer. Looked at are places within the sum of both
 /// layers' reaches of a cut, whose surroundings as far are covered whole in the one pass: at an outline the two differ
-/// because the warp has moved it, and that is no crack. Best 0.
+/// because the warp has moved it, and that is no crack. Nor is what lies at the border of the display: there sprites end
+/// that were cut off by it, and a fiducial of its own, `uncovered_px`, says how far such a side may be in view. Best 0.
 
 #include <cstdint>
 #include <optional>
@@ -35,8 +36,13 @@ struct CutLine {
   double within_px = 1;
 };
 
-/// Pixels by the rule above. Cost: O(pixels near cuts · within²).
-std::int64_t open_pixels(const AlphaPlane& shown, const AlphaPlane& whole, std::span<const CutLine> cuts);
+/// Pixels by the rule above, `border_px` away from the border or more. Cost: O(pixels near cuts · within²).
+std::int64_t open_pixels(const AlphaPlane& shown, const AlphaPlane& whole, std::span<const CutLine> cuts,
+                         int border_px = 0);
+
+/// How wide the border is for a threshold of uncovered edges: the strip and the pixel over which the filter smooths its
+/// end, px; 0 where nothing may be uncovered (0), or nobody looks (negative).
+int border_width_px(double uncovered_px);
 
 /// The edges of a run, found once. Empty where no layers share any: then nothing is counted.
 class SeamCounter {

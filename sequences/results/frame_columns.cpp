@@ -291,7 +291,7 @@ FrameColumns seams() {
   return {stored<FrameLine>(
       "open_seam_pixels", "seams/open_px", "pixels",
       "at the edges that layers share, where what is behind them shows: alpha more than 8/255 below "
-      "`direct`'s",
+      "`direct`'s; without the border of the display, where `uncovered_px` rules",
       [](auto& l) -> auto& { return *l.open_seam_pixels; })};
 }
 

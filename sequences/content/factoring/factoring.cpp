@@ -137,7 +137,12 @@ class Study {
 
   bool too_many_nodes() const { return nodes_.size() > static_cast<std::size_t>(options_.limit()); }
 
+  void begin(const std::string& what) const {
+    if (scene_.begins) scene_.begins(what);
+  }
+
   void look() {
+    begin(formatted("looking at motion and depth of %zu pieces", pieces_.free));
     data_.emplace(Data{{scene_.scene, pieces_.layers, scene_.settings, instants_},
                        {scene_.scene, pieces_.layers, times_of(instants_, scene_.settings.fps),
                         scene_.settings.view.display_px}});
@@ -282,6 +287,7 @@ class Study {
     const Groups bodies = bodies_of(scene_.scene, pieces_);
     frames_ = frames_planned(std::max(bodies.size(), nodes_.size()) + scene_.kept.size());
     std::vector<Factoring> all;
+    begin("grouping");
     std::vector<Candidate> open = starts(bodies);
     for (int round = 0; round <= kJoinRounds; ++round) open = look_at(std::move(open), all);
     for (int round = 0; round < kSplitRounds; ++round) {
@@ -346,6 +352,7 @@ class Study {
   /// what comes of those that are joined.
   std::vector<Candidate> look_at(std::vector<Candidate> open, std::vector<Factoring>& all) const {
     open = new_ones(std::move(open), all);
+    if (!open.empty()) begin(formatted("ordering and planning %zu factorings", open.size()));
     std::atomic<double> least_ms = HUGE_VAL;
     for (const Factoring& f : all) least_ms = std::min(least_ms.load(), dearness_ms(f));
     std::vector<Factoring> found(open.size());
@@ -383,6 +390,7 @@ class Study {
       if (covered < f.pieces[i].size()) looked_at.resize(before + 1);
       owner.resize(looked_at.size(), before);
     }
+    begin(formatted("planning %zu groups, each by itself", looked_at.size()));
     const std::vector<PlannedFactoring> plans = plans_of_parts(looked_at);
     Groups groups;
     for (std::size_t i = 0; i < looked_at.size();) {

@@ -15,6 +15,7 @@
 /// Another way is a value of FactoringWay, its word in factoring_keys.cpp, and a function from Pieces to groups in
 /// `factored`.
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -47,6 +48,7 @@ struct Unfactored {
   std::vector<layers::LayerSpec> kept;   ///< layers that are there already: they take their parts first
   std::vector<layers::LayerSpec> nodes;  ///< what "node" is; empty: layers::default_layer_specs
   Settings settings;                     ///< under which it is planned
+  std::function<void(const std::string&)> begins{};  ///< hears what is done next; empty: nobody
 };
 
 struct Factoring {

@@ -153,6 +153,14 @@ Sharing sharing_of(const layers::Scene& scene, const layers::LayerSet& set, std:
   return sharing;
 }
 
+void add_frame(const FrameReport& report, layers::ivec2 display_px, PlannedFactoring& plan) {
+  ++plan.frames;
+  for (const regulator::LayerDecision& decision : report.plan.decisions) add(decision, plan);
+  plan.polygons += report.shade.shadow_polygons;
+  plan.pixels += report.shade.shadow_pixels;
+  plan.shown_px += shown_area_px(report, display_px);
+}
+
 PlannedFactoring plan_of(const layers::Scene& scene, const layers::LayerSet& set,
                          std::span<const SpecPair> order, const Settings& settings, int frames,
                          double enough_ms) {
@@ -162,14 +170,8 @@ PlannedFactoring plan_of(const layers::Scene& scene, const layers::LayerSet& set
   own.explicit_order = ids_of(order, set);
   const Pipeline pipeline = make_pipeline(scene, set, own);
   PipelineState state(pipeline);
-  for (int frame = 0; frame < frames && result.polygon_ms() + result.pixel_ms() <= enough_ms; ++frame) {
-    const FrameReport report = step(pipeline, state, frame, nullptr);
-    ++result.frames;
-    for (const regulator::LayerDecision& decision : report.plan.decisions) add(decision, result);
-    result.polygons += report.shade.shadow_polygons;
-    result.pixels += report.shade.shadow_pixels;
-    result.shown_px += shown_area_px(report, settings.view.display_px);
-  }
+  for (int frame = 0; frame < frames && result.polygon_ms() + result.pixel_ms() <= enough_ms; ++frame)
+    add_frame(step(pipeline, state, frame, nullptr), settings.view.display_px, result);
   return result;
 }
 

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "layers/layer.h"
+#include "sequences/pipeline/frame_report.h"
 #include "sequences/pipeline/pipeline.h"
 
 namespace talisman::sequences {
@@ -29,6 +30,9 @@ struct PlannedFactoring {
   /// show in the time of a frame counts ten times.
   double work_ms() const;
 };
+
+/// Adds what one planned frame draws and shows.
+void add_frame(const FrameReport& report, layers::ivec2 display_px, PlannedFactoring& plan);
 
 /// Which layers the order of some frames puts into one sprite.
 struct Sharing {

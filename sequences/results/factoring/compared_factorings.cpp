@@ -21,16 +21,9 @@ std::string ordinal_name(const std::string& how) { return how == "node" ? "per n
 PlannedLayers planned_layers(const std::string& name, const Sequence& sequence) {
   const Settings settings = own_settings(sequence);
   const FrameRange range{0, sequence.frames - 1};
-  PlannedLayers result{name, sequence.layer_specs.size(), planned(sequence, settings, range), 0, 0};
-  std::vector<SpecPair> order;
-  std::vector<std::size_t> spec_of(sequence.layers.layers.size());
-  std::size_t spec = 0;
-  for (const layers::Layer& layer : sequence.layers.layers)
-    spec_of[layer.id] = layer.base < 0 ? spec++ : spec_of[layer.base];
-  for (const layers::ExplicitPair& pair : sequence.explicit_order)
-    if (spec_of[pair.behind] != spec_of[pair.front])
-      order.emplace_back(spec_of[pair.behind], spec_of[pair.front]);
-  const PlannedFactoring plan = plan_of(*sequence.scene, sequence.layers, order, settings, sequence.frames);
+  PlannedFactoring plan;
+  const auto add = [&](const FrameReport& report) { add_frame(report, settings.view.display_px, plan); };
+  PlannedLayers result{name, sequence.layer_specs.size(), planned(sequence, settings, range, add), 0, 0};
   result.shown_px = plan.shown_px / sequence.frames;
   result.work_ms = plan.work_ms() / sequence.frames;
   return result;
@@ -177,23 +170,26 @@ Sequence with_layers(const Sequence& sequence, const Factoring& factoring) {
   return changed;
 }
 
-ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers& options) {
+ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers& options,
+                                     const std::function<void(const std::string&)>& begins) {
   std::vector<LayerSpec> kept;
   for (const LayerSpec& spec : sequence.layer_specs)
     if (is_kept(spec)) kept.push_back(spec);
   Settings settings = own_settings(sequence);
   settings.explicit_order.clear();
   ComparedFactoring compared;
-  compared.study = study({*sequence.scene, std::move(kept), {}, settings}, options);
+  compared.study = study({*sequence.scene, std::move(kept), {}, settings, begins}, options);
   std::vector<std::pair<std::string, const Factoring*>> proposals{{"proposed", &compared.study.chosen}};
   for (const Factoring& other : compared.study.others)
     proposals.emplace_back(ordinal_name(other.how), &other);
   compared.all.resize(1 + proposals.size());
+  if (begins) begins("planning " + std::to_string(compared.all.size()) + " whole");
   tbb::parallel_for(std::size_t{0}, compared.all.size(), [&](std::size_t i) {
     compared.all[i] =
         i == 0 ? planned_layers("now", sequence)
                : planned_layers(proposals[i - 1].first, with_layers(sequence, *proposals[i - 1].second));
   });
+  if (begins) begins("planning each change");
   Changes changes(sequence, compared.study);
   compared.wanted = changes.wanted();
   compared.further = changes.further();

@@ -4,6 +4,7 @@
 /// What would other layers cost? A sequence as it is, beside the layers that are proposed for it, one layer per node and one
 /// for all, each planned over the whole sequence; and what each change on the way would save by itself.
 
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -36,7 +37,9 @@ struct ComparedFactoring {
 
 /// Plans all. `options` as of the key `layers`. What an author has factored of a layer's shading, its fade and that it casts no shadow
 /// is kept with the layer: no other factoring shows the same picture. All else of the author's layers is forgotten.
-ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers& options);
+/// `begins` hears what is done next.
+ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers& options,
+                                     const std::function<void(const std::string&)>& begins = nullptr);
 
 /// The sequence with the layers that are proposed.
 Sequence with_layers(const Sequence& sequence, const Factoring& factoring);

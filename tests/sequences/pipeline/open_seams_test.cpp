@@ -53,6 +53,21 @@ TEST(OpenPixels, OnlyNearACutAndNotAtAnOutline) {
   EXPECT_EQ(open_pixels(shown, whole, std::vector{CutLine{{30.5, 0}, {30.5, 60}, 4}}), 0);
 }
 
+TEST(OpenPixels, WhatACutSideUncoversAtTheBorderIsNoCrack) {
+  const AlphaPlane whole = covered(60, 50);
+  AlphaPlane shown = whole;
+  for (int x = 0; x < 60; ++x) at(shown, x, 25) = 0;  // all along the cut
+  const std::vector cut{CutLine{{0, 25.5}, {60, 25.5}, 3}};
+  EXPECT_EQ(open_pixels(shown, whole, cut), 60);
+  EXPECT_EQ(open_pixels(shown, whole, cut, 2), 56) << "two at either end";
+  EXPECT_EQ(open_pixels(shown, whole, cut, 25), 0) << "all rows are border";
+  EXPECT_EQ(open_pixels(shown, whole, cut, 1'000'000), 0);
+  EXPECT_EQ(border_width_px(0), 0) << "nothing may be uncovered, and all is counted";
+  EXPECT_EQ(border_width_px(-1), 0) << "nobody looks";
+  EXPECT_EQ(border_width_px(1), 2);
+  EXPECT_EQ(border_width_px(0.3), 2);
+}
+
 /// A land of 3 x 3 tiles of 8 m, over which the camera flies low; a bright background shows through any crack.
 std::string tiles(const std::string& more) {
   std::string text =
