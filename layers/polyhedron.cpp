@@ -297,7 +297,9 @@ std::span<const std::array<int, 3>> topology(BoundKind kind) { return topology_o
 std::span<const int> face_ends(BoundKind kind) { return topology_of(kind).face_ends; }
 
 Polyhedron bounding_polyhedron(std::span<const dvec3> points, BoundKind kind) {
-  if (points.empty() || !std::all_of(points.begin(), points.end(), is_finite)) return {};
+  if (points.empty() ||
+      !std::all_of(points.begin(), points.end(), [](const dvec3& p) { return is_finite(p); }))
+    return {};
   Box box;
   for (const dvec3& p : points) {
     box.lo = min(box.lo, p);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -326,7 +327,7 @@ bool blends_textures(const LayerSet& set, const Layer& layer) {
                      [&](int member) { return set.layers[member].factored.second_texture; });
 }
 
-/// The factors of the textures of an aggregate's members, one matrix each: they tell apart what matrices do.
+/// The factors of the textures of an aggregate's members, sixteen to a matrix: they tell apart what matrices do.
 void append_blends(const SceneFrame& frame, const LayerSet& set, const Layer& aggregate,
                    std::vector<dmat4>& matrices) {
   for (const int member : aggregate.members) {
@@ -335,7 +336,10 @@ void append_blends(const SceneFrame& frame, const LayerSet& set, const Layer& ag
     for (std::size_t k = member; k < set.layers.size(); ++k) {
       const Layer& held = set.layers[k];
       if (held.id != member && held.base != member) break;
-      if (!held.gain.values.empty()) factors[0][next++] = value_at(held.gain, frame.time_s);
+      if (held.gain.values.empty()) continue;
+      if (next == 16) matrices.push_back(std::exchange(factors, dmat4(0.0))), next = 0;
+      factors[next / 4][next % 4] = value_at(held.gain, frame.time_s);
+      ++next;
     }
     if (next > 0) matrices.push_back(factors);
   }

@@ -7,6 +7,7 @@
 #include "layers/glob.h"
 #include "sequences/content/asset_paths.h"
 #include "sequences/content/bare_model.h"
+#include "sequences/content/factoring/cuts.h"
 #include "sequences/content/factoring/factoring.h"
 #include "sequences/content/images/place_images.h"
 #include "sequences/content/nearest_word.h"
@@ -102,12 +103,13 @@ void apply(const ContentOptions& options, const std::string& path, SceneRecipe& 
 
 /// The layers of a file that leaves them to us; images keep their own. What of the order was not always seen so is a
 /// warning.
-Factoring found_layers(Sequence& sequence, const BuiltScene& built, const std::vector<ImageRecipe>& images,
+Factoring found_layers(Sequence& sequence, BuiltScene& built, const std::vector<ImageRecipe>& images,
                        const AutoLayers& options) {
   std::vector<layers::LayerSpec> kept = tagged_specs(built.scene, built.layer_tags);
   add_image_layers(images, kept);
   const std::size_t kept_count = kept.size();
-  FactoringStudy study_of_layers = study({built.scene, std::move(kept), {}, own_settings(sequence)}, options);
+  CutStudy with_cuts = study_with_cuts({built.scene, std::move(kept), {}, own_settings(sequence)}, options);
+  FactoringStudy& study_of_layers = with_cuts.study;
   Factoring& found = study_of_layers.chosen;
   const std::size_t made = found.specs.size() - kept_count;
   if (!options.joins_to_limit() && made > static_cast<std::size_t>(options.limit()))
@@ -127,6 +129,10 @@ Factoring found_layers(Sequence& sequence, const BuiltScene& built, const std::v
         formatted("%zu pair%s of layers whose bounds know no order %s ordered as seen in %zu of %d frames",
                   found.order.size(), found.order.size() == 1 ? "" : "s",
                   found.order.size() == 1 ? "is" : "are", looked_at, sequence.frames));
+  for (const CutEntry& cut : with_cuts.cuts)
+    sequence.notes.push_back(formatted("part '%s' is cut into %d: one warp would not serve",
+                                       layers::name_of_glob(cut.parts).c_str(), cut.into));
+  if (with_cuts.scene) built.scene = std::move(*with_cuts.scene);
   return std::move(found);
 }
 
@@ -141,6 +147,7 @@ Sequence load_yaml(const std::string& path, const ContentOptions& options) {
     throw InputError(
         "shows nothing, rule: at least one of shapes, models, images, terrain, sky, swarm and building",
         path);
+  apply_cuts(file.cuts, built.scene);
   std::vector<layers::LayerSpec> specs;
   for (const LayerEntry& entry : file.layers) specs.push_back(entry.spec);
   Sequence sequence = std::move(file.settings);

@@ -167,6 +167,9 @@ const Table<SequenceFile>& sequence_keys() {
           .extends_by("extends")
           .include(film_keys())
           .include(&SequenceFile::recipe, scene_keys())
+          .key("cuts", &SequenceFile::cuts, list_of(cut_keys(), 0), "",
+               "large parts that are cut into several, each of which may then be a layer")
+          .otherwise("none")
           .custom(
               "layers",
               either_type({list_type(map_type(layer_keys().keys()), 1), map_type(auto_layers_keys().keys())}),

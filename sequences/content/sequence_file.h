@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "sequences/content/factoring/cuts.h"
 #include "sequences/content/factoring/factoring.h"
 #include "sequences/content/layer_keys.h"
 #include "sequences/content/layer_pairs.h"
@@ -18,6 +19,7 @@ namespace talisman::sequences {
 struct SequenceFile {
   Sequence settings;  ///< without scene and layers
   SceneRecipe recipe;
+  std::vector<CutEntry> cuts;             ///< of parts, before anything is factored
   std::vector<LayerEntry> layers;         ///< empty: one per moving or top-level node, or as the next says
   std::optional<AutoLayers> auto_layers;  ///< how they are found, where none are written
   std::vector<LayerPairEntry> order;

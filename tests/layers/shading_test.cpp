@@ -212,6 +212,32 @@ std::vector<LayerState> states_of(const Room& room, int moved_node = -1, const d
 Room full_room() { return Room().casting().mirroring().shining().factored(); }
 enum FullRoomLayer { kFloor, kShadow, kSpecular, kReflection, kBall };
 
+/// A member of an aggregate with more textures and lights than a matrix has columns, or entries.
+TEST(ShadeState, AllBlendsOfAnAggregateAreKept) {
+  const Room room;
+  for (const int shades : {3, 4, 5, 16, 17, 40}) {
+    LayerSet set;
+    set.layers.resize(static_cast<std::size_t>(shades) + 2);
+    for (int id = 0; id <= shades + 1; ++id) set.layers[id].id = id;
+    set.layers[0].factored.second_texture = true;
+    for (int id = 1; id <= shades; ++id) {
+      set.layers[id].base = 0;
+      set.layers[id].gain = {{0}, {1.0 * id}};
+    }
+    set.layers.back().members = {0};
+    set.layers.back().rigid_node = 0;
+    std::vector<LayerState> states(set.layers.size());
+    for (std::size_t id = 0; id < states.size(); ++id) states[id].layer = static_cast<int>(id);
+    capture_influences(room.scene.at(0), set, states);
+    std::vector<double> found;
+    for (const dmat4& matrix : states.back().world_from_influence)
+      for (int k = 0; k < 16; ++k) found.push_back(matrix[k / 4][k % 4]);
+    ASSERT_EQ(found.size(), 16U * static_cast<std::size_t>((shades + 15) / 16)) << shades;
+    for (std::size_t k = 0; k < found.size(); ++k)
+      EXPECT_EQ(found[k], k < static_cast<std::size_t>(shades) ? k + 1.0 : 0.0) << shades;
+  }
+}
+
 TEST(ShadeState, MovingCasterChangesTheShadesAndNotTheirBase) {
   const auto then = states_of(full_room()), now = states_of(full_room(), 1, {0.2, 0, 0});
   EXPECT_TRUE(now[kFloor].same_pixels(then[kFloor]));

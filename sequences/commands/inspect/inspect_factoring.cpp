@@ -23,7 +23,7 @@ std::string inspect_factoring(const Sequence& sequence, int max_layers) {
   return factoring_text(sequence, compared) + "\n" +
          (is_model ? "# instead of the layers and the order of what `talisman init` makes of this model\n"
                    : "# instead of the layers and the order of this sequence\n") +
-         layers_yaml(chosen.specs, chosen.pairs(), id, {"ground"});
+         cuts_yaml(compared.cuts, id) + layers_yaml(chosen.specs, chosen.pairs(), id, {"ground"});
 }
 
 }  // namespace talisman::sequences

@@ -15,14 +15,14 @@ using regulator::Policy;
 using regulator::RegulatorOptions;
 
 /// A way to know the coming motion; one curve each.
-struct Prediction {
+struct CurvePrediction {
   const char* name;
   void (*choose)(RegulatorOptions&);
 };
 constexpr std::array kPredictions = {
-    Prediction{"known motion", [](RegulatorOptions&) {}},
-    Prediction{"predicted linearly",
-               [](RegulatorOptions& o) { o.lookahead.predict = regulator::Prediction::Linear; }},
+    CurvePrediction{"known motion", [](RegulatorOptions&) {}},
+    CurvePrediction{"predicted linearly",
+                    [](RegulatorOptions& o) { o.lookahead.predict = regulator::Prediction::Linear; }},
 };
 
 Summary plan_of(const Sequence& sequence, Settings settings, const RegulatorOptions& options,
@@ -67,7 +67,7 @@ LookaheadCurve lookahead_curve(const Sequence& sequence, const Settings& setting
   curve.threshold_renders = threshold.renders, curve.threshold_rate = threshold.mean_update_rate;
   curve.oracle_renders = oracle.renders, curve.oracle_rate = oracle.mean_update_rate;
   options.policy = Policy::Lookahead;
-  for (const Prediction& prediction : kPredictions)
+  for (const CurvePrediction& prediction : kPredictions)
     for (const int lookahead : compared_lookaheads()) {
       RegulatorOptions predicted = options;
       predicted.lookahead.frames = lookahead;

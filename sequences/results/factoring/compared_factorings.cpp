@@ -3,9 +3,11 @@
 
 #include <algorithm>
 #include <map>
+#include <memory>
 
 #include <tbb/parallel_for.h>
 
+#include "layers/glob.h"
 #include "sequences/content/own_settings.h"
 #include "sequences/files/quoted.h"
 #include "sequences/results/planned.h"
@@ -170,6 +172,26 @@ Sequence with_layers(const Sequence& sequence, const Factoring& factoring) {
   return changed;
 }
 
+namespace {
+
+/// The sequence as it is, of the scene whose parts are cut: the pieces of a part are in its layer.
+Sequence with_cuts(const Sequence& sequence, const CutStudy& found) {
+  Sequence cut = sequence;
+  const std::vector<int> now = layers_now(sequence);
+  for (const CutEntry& entry : found.cuts)
+    for (std::size_t part = 0; part < now.size(); ++part) {
+      if (now[part] < 0 || !layers::glob_matches(entry.parts, sequence.scene->parts[part].name)) continue;
+      const std::string& layer = sequence.layers.layers[static_cast<std::size_t>(now[part])].name;
+      for (LayerSpec& spec : cut.layer_specs)
+        if (spec.name == layer) spec.part_globs.push_back(entry.parts + "~*");
+    }
+  cut.scene = std::make_shared<const layers::Scene>(*found.scene);
+  cut.layers = layers::factor(*cut.scene, cut.layer_specs);
+  return cut;
+}
+
+}  // namespace
+
 ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers& options,
                                      const std::function<void(const std::string&)>& begins) {
   std::vector<LayerSpec> kept;
@@ -178,7 +200,10 @@ ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers&
   Settings settings = own_settings(sequence);
   settings.explicit_order.clear();
   ComparedFactoring compared;
-  compared.study = study({*sequence.scene, std::move(kept), {}, settings, begins}, options);
+  CutStudy found = study_with_cuts({*sequence.scene, std::move(kept), {}, settings, begins}, options);
+  const Sequence cut = found.scene ? with_cuts(sequence, found) : sequence;
+  compared.study = std::move(found.study);
+  compared.cuts = std::move(found.cuts);
   std::vector<std::pair<std::string, const Factoring*>> proposals{{"proposed", &compared.study.chosen}};
   for (const Factoring& other : compared.study.others)
     proposals.emplace_back(ordinal_name(other.how), &other);
@@ -187,10 +212,10 @@ ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers&
   tbb::parallel_for(std::size_t{0}, compared.all.size(), [&](std::size_t i) {
     compared.all[i] =
         i == 0 ? planned_layers("now", sequence)
-               : planned_layers(proposals[i - 1].first, with_layers(sequence, *proposals[i - 1].second));
+               : planned_layers(proposals[i - 1].first, with_layers(cut, *proposals[i - 1].second));
   });
   if (begins) begins("planning each change");
-  Changes changes(sequence, compared.study);
+  Changes changes(cut, compared.study);
   compared.wanted = changes.wanted();
   compared.further = changes.further();
   return compared;

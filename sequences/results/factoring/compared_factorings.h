@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "sequences/content/factoring/cuts.h"
 #include "sequences/content/factoring/factoring.h"
 #include "sequences/content/sequence.h"
 #include "sequences/results/summary.h"
@@ -33,6 +34,7 @@ struct ComparedFactoring {
   std::vector<LayerChange> wanted;   ///< from what is now to what is proposed
   std::vector<LayerChange> further;  ///< of what is proposed: what was not done
   FactoringStudy study;
+  std::vector<CutEntry> cuts;  ///< with which the proposal and the others are made
 };
 
 /// Plans all. `options` as of the key `layers`. What an author has factored of a layer's shading, its fade and that it casts no shadow

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 
+#include "layers/glob.h"
 #include "sequences/files/how_many.h"
 #include "sequences/files/number_text.h"
 #include "sequences/pictures/page.h"
@@ -65,7 +66,11 @@ std::string layers_table(const ComparedFactoring& compared) {
                           row.merged_renders > 0 ? std::to_string(row.merged_renders) : "",
                           fixed(row.render_ms / std::max(frames, 1.0), 3)});
   }
-  std::string text = plain_text(table);
+  std::string text;
+  for (const CutEntry& cut : compared.cuts)
+    text += "  part '" + layers::name_of_glob(cut.parts) + "' is cut into " + std::to_string(cut.into) +
+            " first: one warp does not serve\n";
+  text += plain_text(table);
   for (const std::string& line : hidden_in_words(study.chosen)) text += "  " + line + "\n";
   return text;
 }
@@ -82,7 +87,7 @@ std::string to_be_cut(const ComparedFactoring& compared) {
       continue;
     text += "  '" + row.name + "' is one part, drawn in " + std::to_string(renders) + " of " +
             std::to_string(frames) + " frames for " + formatted("%.0f %%", 100 * summary.share_of_cost(row)) +
-            " of the work: cut into several (a terrain: segments), most of it might be kept\n";
+            " of the work: cut into more (key cuts; a terrain: segments), most of it might be kept\n";
   }
   return text;
 }
