@@ -44,6 +44,7 @@ constexpr SequenceExperiment kSequenceExperiments[] = {
     {"--latency", &AccuracyOptions::latency, run_latency_accuracy},
     {"--culling", &AccuracyOptions::culling, run_culling_accuracy},
     {"--visibility", &AccuracyOptions::visibility, run_visibility_accuracy},
+    {"--memory", &AccuracyOptions::memory, run_memory_accuracy},
 };
 
 /// The one experiment that is asked for; null: --solvers or --hard.
@@ -70,6 +71,8 @@ int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
   const SequenceExperiment* experiment = chosen_experiment(options);
   if (options.of_sequence.warp_ms != 0 && options.latency.empty())
     throw InputError("--warp-ms is about the last warp of --latency, must come with it");
+  if ((options.of_sequence.memory_mb || options.of_sequence.io_mb_per_s) && options.memory.empty())
+    throw InputError("--memory-mb and --io-mb-per-s are limits of --memory, must come with it");
   require_plotter();
   if (options.solvers) return run_solver_accuracy(options, out);
   if (options.hard)

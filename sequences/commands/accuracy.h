@@ -12,6 +12,7 @@
 ///   --latency SEQUENCE     nothing: error over the age of the camera's pose; motion/accuracy_latency.h
 ///   --culling SEQUENCE     nothing: which structure finds what is in view; culling/accuracy_culling.h
 ///   --visibility SEQUENCE  of what is not drawn because nobody sees it: nothing; likewise
+///   --memory SEQUENCE      nothing: how far ahead is best read what may be seen; likewise
 ///   --hard                 nothing: whether every stage gets right what is hard; accuracy_hard.h
 
 #include <iosfwd>
@@ -25,7 +26,7 @@ struct AccuracyOptions {
   bool solvers = false;  ///< exactly one of the experiments must be asked for
   bool hard = false;     ///< likewise
   // A sequence each; empty: not asked for.
-  std::string regulator, renderer, factoring, predictive, amortised, latency, culling, visibility;
+  std::string regulator, renderer, factoring, predictive, amortised, latency, culling, visibility, memory;
   ExperimentOptions of_sequence;  ///< all but its sequence
   std::string out = "out/accuracy";
   std::string progress = "auto";  ///< auto, bar, plain or none

@@ -183,7 +183,12 @@ void CommandTree::add_inspect() {
           "--parts", inspect_.parts,
           "the tree of nodes: names of parts, polygons, sizes in metres, textures, what is not drawn, and a "
           "picture with the axes")
-      .option("--out", inspect_.out, "with --parts: the picture", "out/NAME-parts.png")
+      .flag("--cells", inspect_.cells,
+            "cells and portals: what lies in a cell, what can be seen from it; and a plan of what is seen in "
+            "a frame")
+      .option("--frame", inspect_.frame, "with --cells: of the plan", "0")
+      .option("--out", inspect_.out, "with --parts or --cells: the picture",
+              "out/NAME-parts.png, NAME-cells.svg")
       .flag("--order", inspect_.order,
             "the visibility order over time, what was merged and why, and what the sort cost")
       .flag("--factoring", inspect_.factoring,
@@ -322,49 +327,63 @@ void CommandTree::add_reproduce() {
   command->callback([this] { exit_code_ = run_reproduce(reproduce_, std::cout); });
 }
 
-void CommandTree::add_accuracy() {
-  CLI::App* command = app_.add_subcommand("accuracy", "what accuracy costs in time");
-  OptionGroup(*command, "What is measured, one of")
-      .flag("--solvers", accuracy_.solvers, "every solver of warps: time, error, stability")
-      .option("--regulator", accuracy_.regulator,
+namespace {
+
+void add_experiments(CLI::App& command, AccuracyOptions& options) {
+  OptionGroup(command, "What is measured, one of")
+      .flag("--solvers", options.solvers, "every solver of warps: time, error, stability")
+      .option("--regulator", options.regulator,
               "SEQUENCE or MODEL: every policy, cost and time against error and popping; fiducials against "
               "image error")
-      .option("--renderer", accuracy_.renderer,
+      .option("--renderer", options.renderer,
               "SEQUENCE or MODEL: every knob and every effect of the renderer, time and counters against "
               "picture error")
-      .option("--factoring", accuracy_.factoring,
+      .option("--factoring", options.factoring,
               "SEQUENCE: what it costs that the compositor has only over, predicted and measured, and what "
               "factoring saves")
-      .option("--predictive", accuracy_.predictive,
+      .option("--predictive", options.predictive,
               "SEQUENCE: buffers that parts share by their motion, beside sprites: cost, bytes and time "
               "against error")
-      .option("--amortised", accuracy_.amortised,
+      .option("--amortised", options.amortised,
               "SEQUENCE: layers that share sprites while it runs, beside the author's, one per part and one "
               "for all")
-      .option("--latency", accuracy_.latency,
+      .option("--latency", options.latency,
               "SEQUENCE: how far points are off by the age of the camera's pose, held, linear, kalman; and "
               "what a last warp saves")
-      .option("--culling", accuracy_.culling,
+      .option("--culling", options.culling,
               "SEQUENCE: trees, octrees and a flat scan that find what is in view: time, nodes, tests")
-      .option("--visibility", accuracy_.visibility,
+      .option("--visibility", options.visibility,
               "SEQUENCE: what each way of finding what can be seen leaves and costs")
-      .flag("--hard", accuracy_.hard,
+      .option("--memory", options.memory,
+              "SEQUENCE: levels skipped and bytes read, over frames looked ahead, culls and memory")
+      .flag("--hard", options.hard,
             "cases of every stage that a careless one gets wrong, each with its rule; exit code 1 if one is "
             "broken");
-  OptionGroup(*command, "Options")
-      .option("--warp-ms", accuracy_.of_sequence.warp_ms, "latency: age of the pose of the last warp, ms",
-              "0")
-      .option("--inputs", accuracy_.inputs, "solvers: boxes per number of points",
-              std::to_string(accuracy_.inputs))
-      .option("--frames", accuracy_.of_sequence.frames, "regulator, renderer, factoring: A-B, inclusive",
-              "all")
-      .option("--size", accuracy_.of_sequence.size,
+}
+
+void add_experiment_options(CLI::App& command, AccuracyOptions& options) {
+  OptionGroup(command, "Options")
+      .option("--memory-mb", options.of_sequence.memory_mb, "memory: room for descriptions, MB", "12")
+      .option("--io-mb-per-s", options.of_sequence.io_mb_per_s, "memory: what can be read, MB/s", "0.45")
+      .option("--warp-ms", options.of_sequence.warp_ms, "latency: age of the pose of the last warp, ms", "0")
+      .option("--inputs", options.inputs, "solvers: boxes per number of points",
+              std::to_string(options.inputs))
+      .option("--frames", options.of_sequence.frames, "regulator, renderer, factoring: A-B, inclusive", "all")
+      .option("--size", options.of_sequence.size,
               "regulator, renderer, factoring: display, WxH (the sequence's, at most " +
-                  std::to_string(kLargestDefault_px) + " in either direction)")
-      .option("--quality-every", accuracy_.of_sequence.quality_every,
+                  std::to_string(kLargestDefault_px) + " in either direction; memory: 1280x1024)")
+      .option("--quality-every", options.of_sequence.quality_every,
               "one frame of N is drawn and compared; 0: about 20 (regulator, factoring), 2 (renderer) in all")
-      .option("--out", accuracy_.out, "result folder", accuracy_.out)
-      .option("--progress", accuracy_.progress, kProgressMeaning, accuracy_.progress);
+      .option("--out", options.out, "result folder", options.out)
+      .option("--progress", options.progress, kProgressMeaning, options.progress);
+}
+
+}  // namespace
+
+void CommandTree::add_accuracy() {
+  CLI::App* command = app_.add_subcommand("accuracy", "what accuracy costs in time");
+  add_experiments(*command, accuracy_);
+  add_experiment_options(*command, accuracy_);
   command->callback([this] { exit_code_ = run_accuracy(accuracy_, std::cout); });
 }
 

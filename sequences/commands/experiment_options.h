@@ -4,6 +4,7 @@
 /// What the commands of the experiments on sequences have in common: their options, and the steps from a name
 /// on the command line to files in a folder.
 
+#include <optional>
 #include <ostream>
 #include <string>
 
@@ -26,6 +27,8 @@ struct ExperimentOptions {
                           ///< inverse; 0: so that about kDefaultSamples are
   std::string progress = "auto";  ///< auto, bar, plain or none
   double warp_ms = 0;             ///< of latency alone: age of the pose of the last warp, 0 … 1000
+  // Of memory alone; empty: those of [Fu93].
+  std::optional<double> memory_mb = {}, io_mb_per_s = {};  ///< ≥ 0
 };
 
 /// With these the canyon takes about three minutes on two cores.

@@ -9,6 +9,7 @@
 
 #include "layers/effects.h"
 #include "regulator/profile.h"
+#include "sequences/commands/inspect/inspect_cells.h"
 #include "sequences/commands/inspect/inspect_factoring.h"
 #include "sequences/commands/inspect/inspect_order.h"
 #include "sequences/commands/inspect/inspect_parts.h"
@@ -147,10 +148,13 @@ namespace {
 
 /// Options that belong to another question would be ignored.
 void require_one_question(const InspectOptions& options) {
-  if (!options.out.empty() && !options.parts)
-    throw InputError("--out is the picture of --parts, must come with it");
-  if (options.parts + options.order + options.factoring + options.motion > 1)
-    throw InputError("--parts, --order, --factoring and --motion are several questions, must be one");
+  if (!options.out.empty() && !options.parts && !options.cells)
+    throw InputError("--out is the picture of --parts or --cells, must come with one of them");
+  if (options.frame && !options.cells)
+    throw InputError("--frame is that of the plan of --cells, must come with it");
+  if (options.parts + options.cells + options.order + options.factoring + options.motion > 1)
+    throw InputError(
+        "--parts, --cells, --order, --factoring and --motion are several questions, must be one");
   if (options.trace.any() && !options.motion)
     throw InputError("--format, --joint, --fps and --scale are about a trace, must come with --motion");
   if (options.max_layers && !options.factoring)
@@ -181,6 +185,7 @@ int run_inspect(const InspectOptions& options, std::ostream& out) {
   const Sequence sequence = load_with_warnings(options.sequence, content);
   out << (options.factoring ? inspect_factoring(sequence, options.max_layers.value_or(kMostLayersByDefault))
           : options.parts   ? inspect_parts(sequence, options.out, options.json)
+          : options.cells   ? inspect_cells(sequence, options.frame.value_or(0), options.out, options.json)
           : options.order   ? order_of(sequence, options)
           : options.json    ? inspection_json(sequence)
                             : inspection_text(sequence));

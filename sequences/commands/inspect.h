@@ -18,8 +18,10 @@ namespace talisman::sequences {
 struct InspectOptions {
   std::string sequence;            ///< name or path; may be empty where `profile` is asked for
   std::string cycles, compositor;  ///< of `order`; empty: the sequence's own
-  std::string out;                 ///< picture of `parts`
+  std::string out;                 ///< picture of `parts`, plan of `cells`
   bool json = false, profile = false, order = false, parts = false, factoring = false;
+  bool cells = false;
+  std::optional<int> frame;       ///< of `cells`
   std::optional<int> max_layers;  ///< of `factoring`
   bool motion = false;            ///< `sequence` is the file of a trace
   MotionQuestion trace;           ///< of `motion`

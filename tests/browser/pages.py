@@ -146,6 +146,7 @@ EXPERIMENTS = {
     "latency": ["accuracy", "--latency", "hall", "--size", "160x120"],
     "culling": ["accuracy", "--culling", "hall", "--frames", "0-3", "--size", "160x120"],
     "visibility": ["accuracy", "--visibility", "hall", "--frames", "0-3", "--size", "160x120"],
+    "memory": ["accuracy", "--memory", "hall", "--frames", "0-9"],
     "compare": ["compare", "carousel", "threshold:1", "hold:3", "--no-video", "--frames", "0-11", "--size", "160x120"],
     "tune": ["tune", "carousel", "--flip", "0.02", "--frames", "0-5", "--size", "160x120"]}
 

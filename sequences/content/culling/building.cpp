@@ -228,17 +228,36 @@ class Building {
     if (atrium_end_ < c_.rooms) add_wing(storey, name, walls, atrium_end_, c_.rooms);
   }
 
+  int rooms_of_piece(int first, int end) const {
+    return c_.corridor_rooms > 0 ? c_.corridor_rooms : end - first;
+  }
+  /// The corridor's cells along rooms `first` … `end`, open to each other.
+  std::vector<int> add_corridor_cells(const std::string& name, int first, int end, double y0, double y1) {
+    std::vector<int> pieces;
+    const int rooms = rooms_of_piece(first, end);
+    for (int room = first; room < end; room += rooms) {
+      const bool is_whole = room == first && room + rooms >= end;
+      const double x0 = x_of(room), x1 = x_of(std::min(room + rooms, end));
+      pieces.push_back(add_cell(is_whole ? name : name + " " + std::to_string(pieces.size()),
+                                {x0, y0, -inner_z()}, {x1, y1, inner_z()}));
+      if (room > first)
+        add_opening(pieces[pieces.size() - 2], pieces.back(), 0, x0, -inner_z(), inner_z(), y0, y1);
+    }
+    return pieces;
+  }
+
   /// Rooms `first` … `end` on both sides of their piece of corridor.
   void add_wing(int storey, const std::string& name, int walls, int first, int end) {
     const double y0 = y_of(storey), y1 = y_of(storey + 1), x0 = x_of(first), x1 = x_of(end);
     const std::string wing = first == 0 ? " west" : " east";
-    const int corridor = add_cell(name + "/corridor" + wing, {x0, y0, -inner_z()}, {x1, y1, inner_z()});
+    const std::vector<int> corridor = add_corridor_cells(name + "/corridor" + wing, first, end, y0, y1);
     add_slabs("corridor" + wing, walls, x0, x1, -inner_z(), inner_z(), y0, y1);
     for (const bool is_east : {false, true}) {
       const double x = is_east ? x1 : x0;
       const bool to_atrium = c_.atrium_rooms > 0 && is_atrium(is_east ? end : first - 1);
       if (to_atrium)
-        add_opening(corridor, atrium_, 0, x, -inner_z(), inner_z(), y0, y1);
+        add_opening(is_east ? corridor.back() : corridor.front(), atrium_, 0, x, -inner_z(), inner_z(), y0,
+                    y1);
       else
         add_wall("corridor" + wing + " end", walls, 0, x, -inner_z(), inner_z(), y0, y1, false, kPlaster[0]);
       if (to_atrium && storey > 0)
@@ -248,7 +267,8 @@ class Building {
     for (const bool is_left : {false, true}) {
       int before = -1;
       for (int room = first; room < end; ++room)
-        before = add_room({storey, room, first, end, is_left}, name, walls, corridor, before);
+        before = add_room({storey, room, first, end, is_left}, name, walls,
+                          corridor[(room - first) / rooms_of_piece(first, end)], before);
     }
   }
 

@@ -6,7 +6,8 @@
 /// A corridor runs along x on each storey, with rooms on both sides, each with an open door to it, and every third with one to
 /// its neighbour. An atrium in the middle takes up the place of some rooms on both sides, over all storeys; the corridors
 /// open onto it. Walls, floors and ceilings are boxes around the planes between cells, with holes at the doors, so that
-/// nobody sees through those planes elsewhere. Cells are the rooms, the two ends of each corridor and the atrium.
+/// nobody sees through those planes elsewhere. Cells are the rooms, the two ends of each corridor, whole or
+/// in pieces, and the atrium.
 ///
 /// Every room is furnished by lot with tables, chairs, shelves, plants and lamps: instances of a few meshes. Parts are called
 /// "storey 0/room 3 left/chair 2"; walls "storey 0/walls/…". Rooms are top-level nodes, so that each is a
@@ -27,6 +28,7 @@ struct BuildingContent {
   layers::dvec2 room_m{5, 6};  ///< > 1.5; along the corridor, across it
   double height_m = 3;         ///< > 2.4; of a storey
   double corridor_m = 2.4;     ///< > 1.5; its width
+  int corridor_rooms = 0;      ///< 0 … 200; a cell of a corridor is so many rooms long; 0: all of a wing
   double wall_m = 0.2;         ///< thickness of walls and floors
   int furniture = 8;           ///< 0 … 1000; pieces in a room
   std::uint32_t seed = 1;

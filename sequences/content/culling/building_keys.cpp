@@ -14,6 +14,8 @@ const Table<BuildingContent>& building_keys() {
           .key("room", &B::room_m, pair({1.5, 1000}), "m", "along the corridor, across it")
           .key("height_m", &B::height_m, number({2.4, 100}), "m", "of a storey")
           .key("corridor_m", &B::corridor_m, number({1.5, 100}), "m", "its width")
+          .key("corridor_rooms", &B::corridor_rooms, whole(0, 200), "",
+               "a cell of a corridor is so many rooms long; 0: all of its wing")
           .key("wall_m", &B::wall_m, number({0.01, 0.5}), "m", "thickness of walls and floors")
           .key("furniture", &B::furniture, whole(0, 1000), "", "pieces in a room")
           .key("seed", &B::seed, whole(0, 2'000'000'000), "", "of all that is random")

@@ -15,6 +15,8 @@
 #include "sequences/experiments/reproduction/figure_23.h"
 #include "sequences/experiments/reproduction/figure_24.h"
 #include "sequences/experiments/reproduction/figures_15_16.h"
+#include "sequences/experiments/reproduction/funkhouser/culling_93.h"
+#include "sequences/experiments/reproduction/funkhouser/memory_93.h"
 #include "sequences/experiments/reproduction/machine.h"
 #include "sequences/experiments/reproduction/shadow_appendix.h"
 #include "sequences/experiments/reproduction/speed_ups.h"
@@ -45,6 +47,14 @@ Paper durbin_1995() {
       {utility_test_95(), amusement_park_95()}};
 }
 
+Paper funkhouser_1993() {
+  return {
+      "Fu93",
+      "Funkhouser, Database and Display Algorithms for Interactive Visualization of Architectural Models, "
+      "PhD thesis, University of California at Berkeley 1993",
+      {visibility_93(), prefetch_93(), queues_93()}};
+}
+
 std::string known_ids(const std::vector<Paper>& papers) {
   std::string text;
   for (const Paper& paper : papers) {
@@ -63,7 +73,9 @@ bool is_known(const std::vector<Paper>& papers, const std::string& id) {
 
 }  // namespace
 
-std::vector<Paper> all_papers() { return {lengyel_snyder_1997(), fearing_1996(), durbin_1995()}; }
+std::vector<Paper> all_papers() {
+  return {lengyel_snyder_1997(), fearing_1996(), durbin_1995(), funkhouser_1993()};
+}
 
 std::vector<Paper> chosen_papers(const std::vector<Paper>& papers, const std::vector<std::string>& only) {
   if (only.empty()) return papers;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 #include <glm/geometric.hpp>
@@ -87,6 +88,42 @@ TEST(RangeCells, CullsKeepThoseAheadAndTheOnesAroundTheEye) {
   EXPECT_EQ(cells(RangeCull::Direction, {0, 0, 1}), (std::vector<int>{2}));
   EXPECT_EQ(cells(RangeCull::Direction, glm::normalize(dvec3(1, 0, -0.25))), (std::vector<int>{2, 3, 4}));
   EXPECT_EQ(cells(RangeCull::Direction, {-1, 0, 0}), (std::vector<int>{2, 1, 0}));
+}
+
+TEST(RangeCells, AnEyeInADoorwayIsInBothRooms) {
+  const auto set = row_of_rooms(3);
+  PrefetchOptions options;
+  options.frames = 1, options.range = RangeCull::Direction;
+  const dvec3 eye(4, 1.5, 2);
+  const auto range = range_cells(*set, set->portals_of(), cells_around(*set, eye, 0),
+                                 observer_at(eye, {0, 0, 1}, options), options);
+  EXPECT_EQ(cells_of(range), (std::vector<int>{0, 1})) << "whatever the cull says";
+  EXPECT_EQ(range[1].frames, 0);
+}
+
+/// The same in units of 1e-4 and 1e6, also far from the origin.
+TEST(RangeCells, DoNotDependOnTheUnit) {
+  for (const double unit : {1e-4, 1.0, 1e6}) {
+    auto set = row_of_rooms(6);
+    const dvec3 shift(3 * unit, -7 * unit, 5 * unit);
+    for (layers::Cell& cell : set->cells) cell.lo = unit * cell.lo + shift, cell.hi = unit * cell.hi + shift;
+    for (layers::Portal& portal : set->portals)
+      for (dvec3& corner : portal.corners) corner = unit * corner + shift;
+    ASSERT_EQ(first_defect(*set), "");
+    std::vector<StoredThing> things;
+    for (int i = 0; i < 6; ++i)
+      things.push_back(thing_at(unit * dvec3(4 * i + 2, 1, 2) + shift, 0.5 * unit, i, {5, 20, 80}));
+    PrefetchOptions options;
+    options.speed_m_per_s = unit, options.frames = 60;
+    Lookahead ahead(things, set, options, 100);
+    const Observer who = observer_at(unit * dvec3(3, 1.5, 2) + shift, {1, 0, 0}, options);
+    EXPECT_EQ(cells_of(range_cells(*set, set->portals_of(), std::vector<int>{0}, who, options)),
+              (std::vector<int>{0, 1, 2}))
+        << unit;
+    std::set<int> items;
+    for (const LevelWant& want : ahead.wants(who)) items.insert(want.item);
+    EXPECT_EQ(items.size(), 6u) << unit << ", all in one line of sight";
+  }
 }
 
 TEST(Lookahead, BringsWhatIsSeenFromTheNextRoomBeforeItIsEntered) {

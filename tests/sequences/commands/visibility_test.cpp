@@ -94,5 +94,54 @@ TEST_F(Visibility, StructuresAreMeasured) {
   EXPECT_THAT(read("o/culling.csv"), HasSubstr("loose octree"));
 }
 
+// Little memory, and how far ahead is best read.
+TEST_F(Visibility, MemoryIsMeasuredWithoutAPicture) {
+  write("rooms.yaml", kTwoRooms);
+  const Outcome outcome = run("accuracy --memory rooms.yaml --progress none --out o");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("1280x1024 px, 5 things in 2 cells"));
+  EXPECT_THAT(outcome.output, HasSubstr("Nothing is skipped with any N."));
+  const std::string csv = read("o/memory.csv");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + 8 * 6);
+  EXPECT_THAT(csv, HasSubstr("direction + frustum"));
+  EXPECT_THAT(read("o/memory.json"), HasSubstr("talisman.memory/1"));
+  EXPECT_THAT(read("o/memory-skipped.svg"), HasSubstr("<svg"));
+  EXPECT_THAT(run("accuracy --memory rooms.yaml --memory-mb 0 --progress none --out p").output,
+              HasSubstr("Least is skipped with N = 1"));
+  expect_bad_input("accuracy --memory rooms.yaml --memory-mb -1", {"memory_mb is -1, must be at least 0"});
+  expect_bad_input("accuracy --memory rooms.yaml --io-mb-per-s -0.5",
+                   {"io_mb_per_s is -0.5, must be at least 0"});
+  expect_bad_input("accuracy --culling rooms.yaml --memory-mb 3",
+                   {"--memory-mb and --io-mb-per-s are limits of --memory, must come with it"});
+  EXPECT_THAT(run("accuracy --memory rooms.yaml --culling rooms.yaml").output,
+              HasSubstr("more than one experiment"));
+}
+
+TEST_F(Visibility, CellsAreInspectedAndDrawn) {
+  write("rooms.yaml", kTwoRooms);
+  const Outcome outcome = run("inspect rooms.yaml --cells --frame 3 --out plans/here.svg");
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
+  EXPECT_THAT(outcome.output, HasSubstr("2 cells, 1 portals, 5 parts, of which 0 are in no cell"));
+  EXPECT_THAT(outcome.output, HasSubstr("the eye is in hall"));
+  EXPECT_THAT(outcome.output, HasSubstr("plan: plans/here.svg"));
+  EXPECT_THAT(read("plans/here.svg"), HasSubstr("<title>wall above the door</title>"));
+  const Outcome json = run("inspect rooms.yaml --cells --json");
+  EXPECT_THAT(json.output, HasSubstr("\"cells_seen\""));
+  EXPECT_THAT(read("out/rooms-cells.svg"), HasSubstr("</svg>"));
+}
+
+TEST_F(Visibility, QuestionsAboutCellsThatCannotBeAnsweredAreRefused) {
+  std::string text = kTwoRooms;
+  write("rooms.yaml", text);
+  text.erase(text.find("cells:"));
+  write("without.yaml", text);
+  expect_bad_input("inspect without.yaml --cells", {"without.yaml: has no cells, --cells must be asked of"});
+  expect_bad_input("inspect rooms.yaml --cells --frame 4", {"--frame is 4, must be 0 … 3"});
+  expect_bad_input("inspect rooms.yaml --cells --out plan.png", {"--out is 'plan.png', must be a .svg file"});
+  expect_bad_input("inspect rooms.yaml --frame 1",
+                   {"--frame is that of the plan of --cells, must come with it"});
+  expect_bad_input("inspect rooms.yaml --cells --parts", {"are several questions, must be one"});
+}
+
 }  // namespace
 }  // namespace talisman
