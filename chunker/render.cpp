@@ -173,6 +173,30 @@ RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& fra
   return result;
 }
 
+RenderedChunks render_chunks(const PreparedScene& prepared, const layers::SceneFrame& frame,
+                             std::span<const int> parts, layers::ivec2 display_px,
+                             const layers::SpritePlacement& placement, std::span<const int> places,
+                             const RenderOptions& options, const ShadeInputs& inputs) {
+  DrawList list;
+  ChunkWork work = set_up_chunks(prepared, frame, parts, display_px, placement, options, inputs, list);
+  work.places.clear();
+  std::vector<std::size_t> index;  // of each place that is worked on
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    TALISMAN_CHECK(places[i] >= 0 && places[i] < work.bins.count());
+    if (work.bins.of(places[i]).empty()) continue;
+    work.places.push_back(places[i]);
+    index.push_back(i);
+  }
+  RenderedChunks result{{places.begin(), places.end()}, std::vector<Chunk>(places.size()), {}};
+  result.counters = draw_chunks(list, work, options, nullptr,
+                                [&](std::size_t i, auto& renderer, auto triangles, layers::ivec2 origin) {
+                                  result.chunks[index[i]] = renderer.draw(triangles, origin);
+                                });
+  for (const Chunk& chunk : result.chunks)
+    ++(is_clear_chunk(chunk) ? result.counters.chunks_clear : result.counters.chunks_rendered);
+  return result;
+}
+
 LinearImage render_linear(const PreparedScene& prepared, const layers::SceneFrame& frame,
                           std::span<const int> parts, layers::ivec2 display_px,
                           const layers::SpritePlacement& placement, const RenderOptions& options,

@@ -169,4 +169,18 @@ RenderResult render(const PreparedScene& prepared, const layers::SceneFrame& fra
                     const layers::SpritePlacement& placement, const RenderOptions& options = {},
                     const ShadeInputs& inputs = {});
 
+/// Some chunks of a sprite.
+struct RenderedChunks {
+  std::vector<int> places;    ///< row · columns + column, ascending
+  std::vector<Chunk> chunks;  ///< as many; clear ones too
+  RenderCounters counters;    ///< chunks, fragments and pixels of these alone
+};
+
+/// The chunks at `places` (ascending) of what render() draws, the same bytes. Cost: O(vertices) + O(triangle–chunk
+/// pairs) + O(covered pixels of these chunks).
+RenderedChunks render_chunks(const PreparedScene& prepared, const layers::SceneFrame& frame,
+                             std::span<const int> parts, layers::ivec2 display_px,
+                             const layers::SpritePlacement& placement, std::span<const int> places,
+                             const RenderOptions& options = {}, const ShadeInputs& inputs = {});
+
 }  // namespace talisman::chunker

@@ -12,6 +12,7 @@ namespace talisman::chunker {
 namespace {
 
 constexpr int kClear = -1;
+constexpr int kReplaced = -2;  ///< and below
 
 /// Two texels at a time; a block is opaque when the bits of all its alphas are set.
 using TexelPair = std::uint64_t;
@@ -77,15 +78,15 @@ bool Sprite::may_hold(int column, int row) const {
 const Chunk* Sprite::chunk(int column, int row) const {
   TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
   const std::int32_t index = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
-  if (late_ && index != kClear) return late_->chunk(index);
-  return index == kClear ? nullptr : &storage_[index];
+  if (late_ && index > kClear) return late_->chunk(index);
+  return index == kClear ? nullptr : &storage_[late_ ? kReplaced - index : index];
 }
 
 std::uint16_t Sprite::opaque_blocks(int column, int row) const {
   TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
   const std::int32_t index = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
-  if (late_ && index != kClear) return late_->opaque_blocks(index);
-  return index == kClear ? std::uint16_t{0} : opaque_[index];
+  if (late_ && index > kClear) return late_->opaque_blocks(index);
+  return index == kClear ? std::uint16_t{0} : opaque_[late_ ? kReplaced - index : index];
 }
 
 void Sprite::store(int column, int row, const Chunk& chunk) {
@@ -104,6 +105,23 @@ void Sprite::store(int column, int row, const Chunk& chunk) {
   reference = static_cast<std::int32_t>(storage_.size());
   storage_.push_back(chunk);
   opaque_.push_back(opaque_blocks_of(chunk));
+}
+
+void Sprite::replace(int column, int row, const Chunk& chunk) {
+  if (late_ == nullptr) return store(column, row, chunk);
+  TALISMAN_CHECK(column >= 0 && column < chunks_.x && row >= 0 && row < chunks_.y);
+  std::int32_t& reference = reference_[static_cast<std::size_t>(row) * chunks_.x + column];
+  if (reference > kReplaced && is_clear_chunk(chunk)) {
+    reference = kClear;
+    return;
+  }
+  if (reference > kReplaced) {
+    reference = kReplaced - static_cast<std::int32_t>(storage_.size());
+    storage_.emplace_back();
+    opaque_.emplace_back();
+  }
+  storage_[kReplaced - reference] = chunk;  // a clear one stays: there is no list of gaps
+  opaque_[kReplaced - reference] = opaque_blocks_of(chunk);
 }
 
 void Sprite::release(std::int32_t& reference) {
@@ -166,6 +184,15 @@ void SpriteStore::drop(int layer) {
   sprites_[layer] = Sprite();
   alive_[layer] = false;
   stored_bytes_[layer] = 0;
+}
+
+void SpriteStore::replace(int layer, std::span<const int> places, std::span<const Chunk> chunks) {
+  TALISMAN_CHECK(find(layer) != nullptr);
+  TALISMAN_CHECK_EQ(places.size(), chunks.size());
+  Sprite& sprite = sprites_[layer];
+  for (std::size_t i = 0; i < places.size(); ++i)
+    sprite.replace(places[i] % sprite.chunks().x, places[i] / sprite.chunks().x, chunks[i]);
+  stored_bytes_[layer] = sprite.bytes();
 }
 
 std::int64_t SpriteStore::bytes() const {

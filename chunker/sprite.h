@@ -52,6 +52,8 @@ class Sprite {
   /// Stores a chunk unless it is clear (then drops what was there). Texels outside size_px must be clear.
   /// Not for several threads at once; those finish their chunks on their own and join them by `assemble`.
   void store(int column, int row, const Chunk& chunk);
+  /// The same, also where chunks are drawn late: that one is no longer.
+  void replace(int column, int row, const Chunk& chunk);
 
   Texel texel(int x, int y) const;     ///< clear outside
   std::int64_t stored_chunks() const;  ///< late ones that may hold something count, drawn or not
@@ -63,7 +65,9 @@ class Sprite {
 
   layers::ivec2 size_px_{0, 0};
   layers::ivec2 chunks_{0, 0};
-  std::vector<std::int32_t> reference_;  ///< index into storage_, -1: clear
+  std::vector<std::int32_t>
+      reference_;  ///< index into storage_, -1: clear. Where chunks are drawn late: a slot of
+                   ///< late_, or -2 - index into storage_ of one that was replaced
   std::vector<Chunk> storage_;
   std::vector<std::uint16_t> opaque_;  ///< opaque blocks of each stored chunk
   std::shared_ptr<LateChunks> late_;   ///< has the chunks in the place of storage_; copies share it
@@ -77,6 +81,8 @@ class SpriteStore {
   void put(int layer, Sprite sprite, std::int64_t stored_bytes);
   const Sprite* find(int layer) const;  ///< null if there is none
   void drop(int layer);
+  /// In place of what the layer's sprite has there; `places` are row · columns + column.
+  void replace(int layer, std::span<const int> places, std::span<const Chunk> chunks);
   std::int64_t bytes() const;
 
  private:

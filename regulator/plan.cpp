@@ -60,6 +60,8 @@ std::string_view name(Action action) {
       return "rerender";
     case Action::Drop:
       return "drop";
+    case Action::Refresh:
+      return "refresh";
   }
   return "?";
 }
@@ -222,6 +224,12 @@ PlanShape plan_shape(const RegulatorOptions& options) {
 
 bool regroups(const RegulatorOptions& options) {
   return options.regroup.by == Regroup::Amortised && options.policy == Policy::Threshold;
+}
+
+bool refreshes_chunks(const RegulatorOptions& options) {
+  return options.refresh == Refresh::Chunks && options.policy == Policy::Threshold &&
+         options.thresholds.geometric_px > 0 && options.blend_frames == 0 && !regroups(options) &&
+         !is_late(options.latency);
 }
 
 bool asks_for_light(const RegulatorOptions& options) {

@@ -20,6 +20,7 @@
 #include "layers/predict_kalman.h"
 #include "regulator/latency_options.h"
 #include "regulator/predictive_options.h"
+#include "regulator/refresh_options.h"
 #include "regulator/regroup.h"
 
 namespace talisman::regulator {
@@ -42,8 +43,13 @@ inline constexpr std::array kAllPolicies = {Policy::Direct,      Policy::Referen
 std::string_view name(Policy policy);
 std::optional<Policy> policy_from_name(std::string_view text);
 
-enum class Action { Reuse, Rerender, Drop };
-std::string_view name(Action action);  ///< "reuse", "rerender", "drop"
+enum class Action {
+  Reuse,
+  Rerender,
+  Drop,
+  Refresh,  ///< some chunks of the old sprite are drawn anew (regulator/chunk_refresh.h), and it is carried as with Reuse
+};
+std::string_view name(Action action);  ///< "reuse", "rerender", "drop", "refresh"
 
 /// What drawing a layer once costs, as far as it can be told without drawing.
 struct LayerCost {
@@ -52,6 +58,19 @@ struct LayerCost {
   std::int64_t chunks = 0;    ///< 32×32 chunks of the sprite's rectangle
   std::int64_t bytes = 0;     ///< of the sprite, uncompressed, clear chunks included
   bool operator==(const LayerCost&) const = default;
+};
+
+/// What is known of the chunks of a sprite that does not serve as a whole (regulator/chunk_refresh.h).
+struct ChunkAssessment {
+  std::string why_whole{};  ///< why chunks are not drawn alone; empty: they are, or need not be
+  warp::FitResult fitted;   ///< as all below, valid where that is empty
+  fiducials::Report
+      fiducials;  ///< under that warp; the geometric one of the chunks that are left as they are
+  ChunkShare share;
+  std::vector<int> over{};  ///< the chunks to be drawn: row · columns + column, ascending
+  LayerCost cost;           ///< of them
+  bool mixed =
+      false;  ///< some were drawn alone before: then these are the assessment's own fit and fiducials, too
 };
 
 /// What the regulator knows about one layer at one frame.
@@ -73,6 +92,8 @@ struct LayerAssessment {
   int frames_at_rest = 0;  ///< frames in a row, this one the last, in which its state was that of the frame
                            ///< before; counted only with settle_frames
   std::string new_picture{};  ///< what its sprite shows an old frame of, in words; empty: nothing
+  std::optional<ChunkAssessment>
+      chunks{};  ///< with Refresh::Chunks, where the sprite is off as a whole, or mixed
 };
 
 /// The budget of a frame that is not limited.
@@ -160,8 +181,9 @@ struct RegulatorOptions {
   BudgetOptions budget;
   PredictiveOptions predictive;
   RegroupOptions regroup;
-  LatencyOptions latency;      ///< all policies
-  layers::KalmanNoise kalman;  ///< of Prediction::Kalman, wherever it is
+  Refresh refresh = Refresh::Sprite;  ///< what is drawn anew where only places of a sprite are too far off
+  LatencyOptions latency;             ///< all policies
+  layers::KalmanNoise kalman;         ///< of Prediction::Kalman, wherever it is
   bool operator==(const RegulatorOptions&) const = default;
 };
 
@@ -185,6 +207,8 @@ struct LayerDecision {
   bool deferred = false;               ///< worth drawing, but the frame's budget did not suffice
   bool over_budget = false;            ///< of these: dearer than the whole budget of a frame
   bool settled = false;                ///< drawn because it is at rest (regulator/settle.h): as of this frame
+  std::optional<ChunkShare>
+      chunks{};  ///< Refresh, and Reuse of a sprite whose chunks are of several instants
 };
 
 struct MapAssessment;
@@ -235,6 +259,10 @@ PlanShape plan_shape(const RegulatorOptions& options);
 
 /// Do layers share sprites because it is cheaper: is that asked for, and does the policy know how?
 bool regroups(const RegulatorOptions& options);
+
+/// Are chunks of sprites drawn alone: is that asked for, and does nothing forbid it for all sprites: another policy, a
+/// threshold of 0 px, fades, shared sprites, old poses?
+bool refreshes_chunks(const RegulatorOptions& options);
 
 /// For how many later frames a sprite is expected to be moved by a warp: 0 where none is (Direct, Reference,
 /// Hold, Predictive, or a threshold of 0 px), N - 1 for Interpolate, `threshold_default` for the rest. Extents grow in

@@ -109,11 +109,54 @@ std::string violation_of(const LayerAssessment& layer, const RegulatorOptions& o
   return violation;
 }
 
+namespace {
+
+/// "12 of 80 chunks"
+std::string in_words(const ChunkShare& share) {
+  return std::to_string(share.drawn) + " of " + std::to_string(share.stored) + " chunks";
+}
+
+/// What is known of the layer if its chunks over the bound are drawn.
+LayerAssessment with_chunks_drawn(const LayerAssessment& layer) {
+  LayerAssessment drawn = layer;
+  drawn.fitted = layer.chunks->fitted;
+  drawn.fiducials = layer.chunks->fiducials;
+  return drawn;
+}
+
+/// A sprite that does not serve as a whole, or whose chunks are of several instants: the chunks over the bound are drawn
+/// where that is all that is wrong with it, none where none is over, else the whole.
+LayerDecision decide_chunks(const LayerAssessment& layer, const RegulatorOptions& options) {
+  const ChunkAssessment& chunks = *layer.chunks;
+  const LayerAssessment drawn = chunks.why_whole.empty() ? with_chunks_drawn(layer) : layer;
+  const std::string why_whole = chunks.why_whole.empty() ? violation_of(drawn, options) : chunks.why_whole;
+  if (!why_whole.empty() || settles(drawn, options)) {
+    std::string reason = violation_of(layer, options);
+    if (reason.empty()) reason = why_whole.empty() ? settle_reason(drawn) : "chunks of several instants";
+    return rerender(layer,
+                    reason + (why_whole.empty() || why_whole == reason ? "" : "; whole: " + why_whole));
+  }
+  const double limit_px = geometric_limit_px(layer, options.thresholds);
+  LayerDecision decision =
+      reuse(drawn, comparison("geometric", drawn.fiducials.geometric.px, "<=", limit_px, "px"));
+  decision.chunks = chunks.share;
+  if (chunks.share.drawn == 0) return decision;
+  decision.action = Action::Refresh;
+  decision.reason = comparison("geometric", layer.fiducials.geometric.px, ">", limit_px, "px") + " in " +
+                    in_words(chunks.share);
+  decision.warp_geometric_px = layer.fiducials.geometric.px;
+  decision.cost = chunks.cost;
+  return decision;
+}
+
+}  // namespace
+
 /// Renders a layer again when a fiducial says that its warped sprite is no longer good enough: the threshold
 /// regulator of [LS97 6]. A threshold of 0 px reuses only what would be drawn identically, so that the
 /// pictures equal `reference`.
 LayerDecision decide_threshold(const LayerAssessment& layer, const RegulatorOptions& options) {
   if (nothing_to_gain(layer)) return reuse(layer, "unchanged");
+  if (layer.chunks && !barred_by_maximum_rate(layer)) return decide_chunks(layer, options);
   std::string violation = violation_of(layer, options);
   const bool settled = violation.empty() && settles(layer, options);
   if (settled) violation = settle_reason(layer);

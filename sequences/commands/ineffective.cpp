@@ -66,7 +66,8 @@ std::vector<Group> groups_of(const CommandLine& line, bool is_late) {
       "--motion-norm", line.motion_norm)("--intervals", line.intervals)("--adaptive", line.adaptive);
   if (!is_late) Given(groups[9].given)("--predict", line.predict);
   Given(groups[10].given)("--regroup", line.regroup)("--regroup-prices", line.regroup_prices)(
-      "--regroup-ceiling-ms", line.regroup_ceiling_ms)("--regroup-dwell", line.regroup_dwell);
+      "--regroup-ceiling-ms", line.regroup_ceiling_ms)("--regroup-dwell", line.regroup_dwell)("--refresh",
+                                                                                              line.refresh);
   return groups;
 }
 

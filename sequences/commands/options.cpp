@@ -155,6 +155,7 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
     options.predictive.intervals = choice("--intervals", line.intervals, kIntervalsWords);
   if (!line.adaptive.empty()) options.predictive.adaptive = choice("--adaptive", line.adaptive, kSwitchWords);
   apply_regrouping(line, options.regroup);
+  if (!line.refresh.empty()) options.refresh = choice("--refresh", line.refresh, kRefreshWords);
   apply_limits(line, options);
   apply_latency(line.latency_ms, options.latency);
   apply_prediction(line, options);

@@ -37,7 +37,7 @@ struct CommandLine {
   std::string visibility;                        ///< "cto,eye,eye"
   std::string joining, motion_norm, intervals, adaptive;
   std::string latency_ms;  ///< "RENDER" or "RENDER,WARP"
-  std::string regroup, regroup_prices;
+  std::string regroup, regroup_prices, refresh;
   std::optional<double> regroup_ceiling_ms;
   std::optional<int> regroup_dwell;
   std::optional<int> tree_k, samples, accumulate;

@@ -96,6 +96,10 @@ void add_regrouping(CLI::App& command, CommandLine& line) {
               "the changes of one frame cost no more at once, modelled ms", "no limit")
       .option("--regroup-dwell", line.regroup_dwell, "frames for which a changed grouping stays at least",
               std::to_string(usual.dwell_frames));
+  OptionGroup(command, "Refresh (policy threshold)")
+      .option("--refresh", line.refresh,
+              "what is drawn where a sprite is off in places: all of it (sprite), or those chunks (chunks)",
+              std::string(word_of(kUsual.refresh, kRefreshWords)));
 }
 
 void add_thresholds(CLI::App& command, CommandLine& line) {

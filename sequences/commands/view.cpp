@@ -66,23 +66,15 @@ std::vector<std::string> texts_of_visibility() {
 
 /// The words of the options that are choices.
 std::map<std::string, std::vector<std::string>> words_of_choices() {
-  return {{"policy", texts_of(kPolicyWords)},
-          {"predict", texts_of(kPredictionWords)},
-          {"joining", texts_of(kJoiningWords)},
-          {"motion-norm", texts_of(kMotionNormWords)},
-          {"stagger", texts_of(kSwitchWords)},
-          {"regroup", texts_of(kRegroupWords)},
-          {"regroup-prices", texts_of(kRegroupPricesWords)},
-          {"color-warp", texts_of(kSwitchWords)},
-          {"choice", texts_of(kChoiceRuleWords)},
-          {"warp", texts_of(kCurveWords)},
-          {"bound", texts_of(kBoundWords)},
-          {"cycles", texts_of(kCyclesWords)},
-          {"compositor", texts_of(kCompositorWords)},
-          {"visibility", texts_of_visibility()},
-          {"shading", texts_of(kShadingWords)},
-          {"samples", {"1", "4", "16"}},
-          {"late-chunks", texts_of(kSwitchWords)}};
+  return {{"policy", texts_of(kPolicyWords)},     {"predict", texts_of(kPredictionWords)},
+          {"joining", texts_of(kJoiningWords)},   {"motion-norm", texts_of(kMotionNormWords)},
+          {"stagger", texts_of(kSwitchWords)},    {"regroup", texts_of(kRegroupWords)},
+          {"refresh", texts_of(kRefreshWords)},   {"regroup-prices", texts_of(kRegroupPricesWords)},
+          {"color-warp", texts_of(kSwitchWords)}, {"choice", texts_of(kChoiceRuleWords)},
+          {"warp", texts_of(kCurveWords)},        {"bound", texts_of(kBoundWords)},
+          {"cycles", texts_of(kCyclesWords)},     {"compositor", texts_of(kCompositorWords)},
+          {"visibility", texts_of_visibility()},  {"shading", texts_of(kShadingWords)},
+          {"samples", {"1", "4", "16"}},          {"late-chunks", texts_of(kSwitchWords)}};
 }
 
 /// Shows each option that the page may set, with its name.

@@ -89,6 +89,7 @@ inline constexpr Words<regulator::Intervals, 2> kIntervalsWords{
 inline constexpr Words<regulator::MotionNorm, 2> kMotionNormWords{
     {{"axis", regulator::MotionNorm::Axis}, {"euclid", regulator::MotionNorm::Euclid}}};
 inline const auto kRegroupWords = words_of(regulator::kAllRegroups);
+inline const auto kRefreshWords = words_of(regulator::kAllRefreshes);
 inline const auto kRegroupPricesWords = words_of(regulator::kAllRegroupPrices);
 inline const auto kChoiceRuleWords = words_of(regulator::kAllChoiceRules);
 

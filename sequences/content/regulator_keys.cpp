@@ -132,6 +132,11 @@ Format<regulator::RegroupPrices> regroup_prices() {
   return choice<regulator::RegroupPrices>({{"modelled", Modelled}, {"durbin-1995", Durbin1995}});
 }
 
+Format<regulator::Refresh> refresh_of() {
+  using enum regulator::Refresh;
+  return choice<regulator::Refresh>({{"sprite", Sprite}, {"chunks", Chunks}});
+}
+
 Table<RegroupOptions> regroup_keys() {
   using R = RegroupOptions;
   return Table<R>()
@@ -233,6 +238,9 @@ const Table<RegulatorOptions>& regulator_keys() {
           .include(&R::budget, budget_keys())
           .include(&R::predictive, predictive_keys())
           .include(&R::regroup, regroup_keys())
+          .key("refresh", &R::refresh, refresh_of(), "",
+               "policy threshold: where a sprite is too far off in places only, all of it is drawn again "
+               "(sprite), or the chunks that show them (chunks)")
           .include(&R::latency, latency_keys())
           .include(&R::kalman, kalman_keys())
           .rule("latency_warp_ms at most latency_ms", [](const R& r) {

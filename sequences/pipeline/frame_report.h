@@ -18,6 +18,7 @@
 #include "sequences/pipeline/layer_table.h"
 #include "sequences/pipeline/lookahead_report.h"
 #include "sequences/pipeline/predictive/predictive_report.h"
+#include "sequences/pipeline/refresh/refresh_report.h"
 #include "sequences/pipeline/shade_memory.h"
 #include "sequences/pipeline/sprite_compression.h"
 
@@ -90,6 +91,7 @@ struct FrameReport {
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   std::optional<PredictiveReport> predictive;      ///< of that policy
   std::optional<LookaheadReport> lookahead;        ///< of the policies that look ahead
+  std::optional<RefreshReport> refresh;            ///< of a run that draws chunks alone
   std::optional<LateDisplay> late;                 ///< of a run that knows old poses only
   StageTimes times;
   chunker::Frame picture;  ///< empty when only planned

@@ -15,6 +15,7 @@
 #include "sequences/pipeline/culling/culling.h"
 #include "sequences/pipeline/light_planning.h"
 #include "sequences/pipeline/motion_blur.h"
+#include "sequences/pipeline/refresh/refresh.h"
 #include "sequences/pipeline/shadow_map_planning.h"
 #include "warp/quadrilateral.h"
 
@@ -383,6 +384,7 @@ LayerAssessment assess_layer(const Pipeline& pipeline, PipelineState& state, int
   assessment.in_view = now.touches_display;
   assessment.has_sprite = memory.then.has_value();
   assessment.identical = assessment.identical && !memory.has_old_shadows;
+  assess_chunks(pipeline, state, layer_id, frame, assessment);
   if (!assessment.in_view) return assessment;
   const bool must_be_exact = pipeline.settings.regulator.policy == Policy::Budget;
   assessment.cost = must_be_exact ? cost_of(pipeline, state.layers, layer_id,

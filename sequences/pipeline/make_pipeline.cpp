@@ -10,6 +10,7 @@
 #include "sequences/pipeline/culling/culling.h"
 #include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/light_planning.h"
+#include "sequences/pipeline/refresh/refresh.h"
 
 namespace talisman::sequences {
 
@@ -29,6 +30,9 @@ Pipeline make_pipeline(const layers::Scene& scene, layers::LayerSet layers, cons
                                                    layers::make_layer_bound(scene, layer, settings.bound,
                                                                             settings.material_points)));
   pipeline.authored = {std::move(layers), std::move(bounds)};
+  if (regulator::refreshes_chunks(settings.regulator))
+    pipeline.contents = std::make_shared<const std::vector<regulator::LayerContent>>(
+        layer_contents(scene, pipeline.authored));
   if (settings.visibility.any())
     pipeline.culling = std::make_shared<const Culling>(scene, pipeline.authored, settings);
   return pipeline;

@@ -14,7 +14,9 @@
 #include "layers/layer.h"
 #include "layers/sprite_transform.h"
 #include "layers/state.h"
+#include "regulator/chunk_refresh.h"
 #include "regulator/plan.h"
+#include "regulator/refresh_ledger.h"
 #include "sequences/pipeline/culling/unshared.h"
 #include "sequences/pipeline/culling/visibility.h"
 #include "sequences/pipeline/frame_order.h"
@@ -82,6 +84,8 @@ struct Pipeline {
   std::shared_ptr<const Culling> culling;  ///< null where Settings::visibility asks for nothing
   std::shared_ptr<const layers::Scene>
       rig;  ///< the camera alone, of a late run (latency/late_camera.h); or null
+  /// What the author's layers draw, by id; null unless chunks are drawn alone (refresh/refresh.h).
+  std::shared_ptr<const std::vector<regulator::LayerContent>> contents{};
 };
 
 /// Since when is a layer at rest (regulator/settle.h)? Kept only where the regulator asks for it.
@@ -105,6 +109,8 @@ struct LayerMemory {
   bool predicted = false;  ///< `then` was extrapolated in frame_rendered, it is not the scene's own motion
   int frames_short_of_area = 0;  ///< frames in a row in which it was deferred for want of pixels or chunks
   RestMemory rest;
+  regulator::RefreshLedger ledger{};                ///< of its chunks drawn alone
+  std::optional<regulator::SpriteChunks> chunks{};  ///< empty unless chunks of it were judged or drawn alone
 };
 
 /// What is known of one frame of the motion: the states of all layers, and where their sprites would lie as

@@ -294,6 +294,15 @@ chunker::RenderResult draw_layer_late(const Drawing& drawing, const Layer& layer
               &chunker::render_late);
 }
 
+chunker::RenderedChunks draw_layer_chunks(const Drawing& drawing, const Layer& layer,
+                                          const SpritePlacement& placement, const std::vector<int>& places) {
+  const Contents contents = contents_of(drawing.layers.set(), layer, drawing.frame.time_s);
+  const LookedUp looked_up(drawing, contents, placement);
+  const Settings& settings = drawing.pipeline.settings;
+  return chunker::render_chunks(drawing.prepared, drawing.frame, contents.parts, settings.view.display_px,
+                                placement, places, settings.render, looked_up.inputs());
+}
+
 chunker::LinearImage draw_layer_linear(const Drawing& drawing, const Layer& layer,
                                        const SpritePlacement& placement, std::optional<layers::vec2> blend) {
   if (is_ratio(layer)) return draw_what_is_left(drawing, layer, placement);

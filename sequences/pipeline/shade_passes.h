@@ -47,6 +47,11 @@ chunker::RenderResult draw_layer(const Drawing& drawing, const layers::Layer& la
 chunker::RenderResult draw_layer_late(const Drawing& drawing, const layers::Layer& layer,
                                       const layers::SpritePlacement& placement);
 
+/// The chunks at `places` of what draw_layer draws, with all else that is to be told of them.
+chunker::RenderedChunks draw_layer_chunks(const Drawing& drawing, const layers::Layer& layer,
+                                          const layers::SpritePlacement& placement,
+                                          const std::vector<int>& places);
+
 /// What draw_layer encodes, as it is before that. `blend`: factors of its two textures, in place of what its
 /// materials say.
 chunker::LinearImage draw_layer_linear(const Drawing& drawing, const layers::Layer& layer,

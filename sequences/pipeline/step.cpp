@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/pipeline/step.h"
 
-#include <map>
-
 #include "chunker/late_chunks.h"
 #include "layers/animation.h"
 #include "layers/built_effects.h"
@@ -18,11 +16,13 @@
 #include "sequences/pipeline/direct_picture.h"
 #include "sequences/pipeline/draw_instant.h"
 #include "sequences/pipeline/extended_composite.h"
+#include "sequences/pipeline/instants.h"
 #include "sequences/pipeline/latency/last_warp.h"
 #include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_beside.h"
 #include "sequences/pipeline/predictive/plan_buffers.h"
+#include "sequences/pipeline/refresh/refresh.h"
 #include "sequences/pipeline/regrouping/regroup.h"
 #include "sequences/pipeline/shade_passes.h"
 #include "sequences/pipeline/shadow_map_planning.h"
@@ -134,6 +134,7 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
     report.upload_bytes = 0;
   }
   if (looks_ahead(pipeline)) report.lookahead.emplace();
+  if (refreshes_chunks(pipeline)) report.refresh = refreshed(report.plan);
   for (regulator::LayerDecision& decision : report.plan.decisions) {
     if (decision.action == Action::Drop) continue;
     LayerMemory& memory = state.memory[decision.layer];
@@ -149,12 +150,16 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
       memory.frame_rendered = report.frame;
       memory.depicts_frame = instant;
       memory.drawn = false;
+      memory.chunks.reset();
+      memory.ledger = regulator::after_whole(memory.ledger, report.frame);
       memory.resolution = decision.resolution;
       memory.predicted = predicts(pipeline);
       memory.frames_short_of_area = 0;
       decision.cost = cost_of(pipeline, state.layers, decision.layer, memory.placement);
       look_up_shadow_maps(pipeline, state, maps, decision.layer, instant, report);
     }
+    if (decision.action == Action::Refresh)
+      remember_refresh(pipeline, state, report.frame, report.assessments[decision.layer]);
     memory.frames_short_of_area = decision.short_of_area ? memory.frames_short_of_area + 1 : 0;
     decision.depicts_frame = memory.depicts_frame;
     memory.frame_shown = report.frame;
@@ -198,7 +203,8 @@ std::vector<ShownSprite> sprites_shown(const Pipeline& pipeline, const PipelineS
       multipliers.color *= layers::vec3(decision.shown_color);
     shown.push_back({layer, decision.shown_warp.now_from_then * to_mat3(memory.placement.screen_from_sprite),
                      memory.placement.size_px, report.frame - memory.frame_rendered, multipliers});
-    shown.back().steps = decision.action == Action::Rerender || fades_in || fades.ended.contains(layer);
+    shown.back().steps = decision.action == Action::Rerender || decision.action == Action::Refresh ||
+                         fades_in || fades.ended.contains(layer);
     if (fades_in) shown.back().old = fade->second;
     if (report.layers[layer].kind == layers::LayerKind::Light)
       shown.back().beside_base_px =
@@ -213,26 +219,6 @@ const chunker::CompressionOptions* compression_of(const Pipeline& pipeline) {
   const bool called = layers::is_built(layers::Effect::SpriteCompression) && pipeline.settings.compression;
   return called ? &*pipeline.settings.compression : nullptr;
 }
-
-/// The scene at the instants of the sprites and the shadow maps that a frame draws.
-class Instants {
- public:
-  Instants(const Pipeline& pipeline, int frame, const SceneFrame& now)
-      : pipeline_(pipeline), frame_(frame), now_(now) {}
-  /// As it was expected in frame `known`.
-  const SceneFrame& at(int known, int instant) {
-    if (known == frame_ && instant == frame_) return now_;
-    const auto [it, is_new] = others_.try_emplace({known, instant});
-    if (is_new) it->second = scene_expected(pipeline_, known, instant);
-    return it->second;
-  }
-
- private:
-  const Pipeline& pipeline_;
-  int frame_;
-  const SceneFrame& now_;
-  std::map<std::pair<int, int>, SceneFrame> others_;
-};
 
 /// Does a frame look only at the chunks that it shows?
 bool draws_chunks_late(const Pipeline& pipeline) {
@@ -254,6 +240,28 @@ chunker::RenderResult draw_remembered(const Pipeline& pipeline, PipelineState& s
               memory.placement);
 }
 
+/// Draws the chunks that are of other instants than the whole, and that the sprite does not hold yet.
+void draw_missing_chunks(const Pipeline& pipeline, PipelineState& state, Instants& instants,
+                         const chunker::PreparedScene& prepared, int layer, FrameReport& report) {
+  LayerMemory& memory = state.memory[layer];
+  if (!memory.chunks) return;
+  for (std::size_t k = 1; k < memory.chunks->instants.size(); ++k) {
+    if (memory.chunks->drawn[k]) continue;
+    const int instant = memory.chunks->instants[k]->frame;
+    const chunker::RenderedChunks drawn = draw_layer_chunks(
+        {pipeline, state.layers, state.shadow_maps, prepared, instants.at(instant, instant), {}},
+        state.layers[layer], placement_of(memory, k), places_of(*memory.chunks, k));
+    state.sprites.replace(layer, drawn.places, drawn.chunks);
+    memory.chunks->drawn[k] = 1;
+    if (instant != report.frame) {
+      ++report.late_renders;
+      continue;
+    }
+    report.render += drawn.counters;
+    report.render_by_layer[layer] += drawn.counters;
+  }
+}
+
 /// Draws the sprites that fade out in this frame and were planned in frames that were not drawn.
 void draw_missing_fades(const Pipeline& pipeline, PipelineState& state, Instants& instants,
                         const chunker::PreparedScene& prepared, FrameReport& report) {
@@ -272,7 +280,10 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
   Instants instants(pipeline, report.frame, now);
   for (const ShownSprite& sprite : report.shown) {
     LayerMemory& memory = state.memory[sprite.layer];
-    if (memory.drawn) continue;
+    if (memory.drawn) {
+      draw_missing_chunks(pipeline, state, instants, prepared, sprite.layer, report);
+      continue;
+    }
     chunker::RenderResult result = draw_remembered(pipeline, state, instants, prepared, sprite.layer, memory);
     const bool is_late = memory.frame_rendered != report.frame;
     if (const chunker::CompressionOptions* compression = compression_of(pipeline))
@@ -287,6 +298,7 @@ void draw_missing_sprites(const Pipeline& pipeline, PipelineState& state, const 
       report.render += result.counters;
       report.render_by_layer[sprite.layer] = result.counters;
     }
+    draw_missing_chunks(pipeline, state, instants, prepared, sprite.layer, report);
   }
   draw_missing_fades(pipeline, state, instants, prepared, report);
 }

@@ -94,7 +94,7 @@ void Auditor::look(const Pipeline& pipeline, PipelineState& state, const FrameRe
   const BlendedSprites blended = blended_sprites(state, report);
   for (const ShownSprite& sprite : report.shown) {
     const regulator::LayerDecision& decision = report.plan.decisions[sprite.layer];
-    if (decision.action != regulator::Action::Reuse && !sprite.old) continue;
+    if (decision.action == regulator::Action::Rerender && !sprite.old) continue;
     Kept& kept = of_layer(report.layers[sprite.layer].name);
     if (++kept.audit.reuses % every_ != 0) continue;
     const chunker::Sprite* old = placed_sprite(sprite, state.sprites, blended).sprite;

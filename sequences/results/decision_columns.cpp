@@ -54,17 +54,20 @@ Value if_computed(const Part& part, T value) {
 }
 
 DecisionColumns what_was_done() {
-  return {computed<Row>("frame", "frame", "", "number of the frame, from 0",
-                        [](const Row& r) { return r.frame; }),
-          computed<Row>("layer", "layer", "",
-                        "name of the layer, of the aggregate that draws several, or of the shadow map",
-                        [](const Row& r) { return std::string_view(r.name); }),
-          computed<Row>("decision", "decision", "",
-                        "reuse (warp the old sprite), rerender, or drop (out of view)",
-                        [](const Row& r) { return regulator::name(r.decision.action); }),
-          computed<Row>("reason", "reason", "",
-                        "why, with the numbers that decided; settled: it was shown enlarged, and is at rest",
-                        [](const Row& r) { return r.decision.reason; })};
+  return {
+      computed<Row>("frame", "frame", "", "number of the frame, from 0",
+                    [](const Row& r) { return r.frame; }),
+      computed<Row>("layer", "layer", "",
+                    "name of the layer, of the aggregate that draws several, or of the shadow map",
+                    [](const Row& r) { return std::string_view(r.name); }),
+      computed<Row>(
+          "decision", "decision", "",
+          "reuse (warp the old sprite), rerender, refresh (warp it, and draw some of its chunks), or drop "
+          "(out of view)",
+          [](const Row& r) { return regulator::name(r.decision.action); }),
+      computed<Row>("reason", "reason", "",
+                    "why, with the numbers that decided; settled: it was shown enlarged, and is at rest",
+                    [](const Row& r) { return r.decision.reason; })};
 }
 
 DecisionColumns warp_columns() {
@@ -254,6 +257,20 @@ DecisionColumns remaining_fiducials() {
                     [](const Row& r) { return assessment(r).frames_since_render; })};
 }
 
+DecisionColumns chunk_columns() {
+  return {computed<Row>("chunks_drawn", "chunks/drawn", "32×32 chunks", "of the old sprite, drawn anew",
+                        [](const Row& r) { return r.decision.chunks->drawn; }),
+          computed<Row>("chunks_stored", "chunks/stored", "32×32 chunks",
+                        "of it, that may hold something by the layer's geometry",
+                        [](const Row& r) { return r.decision.chunks->stored; }),
+          computed<Row>("chunks_step_px", "chunks/step_px", "px",
+                        "bound of the step between chunks of different age that are shown beside each other",
+                        [](const Row& r) { return r.decision.chunks->step_px; }),
+          computed<Row>("chunks_torn_borders", "chunks/torn_borders", "groups of triangles",
+                        "at such borders, whose step may be more than geometric_px",
+                        [](const Row& r) { return r.decision.chunks->torn_borders; })};
+}
+
 DecisionColumns cost_columns() {
   return {
       computed<Row>("cost_polygons", "cost/polygons", "triangles", "sent to the renderer; 0 unless rendered",
@@ -292,12 +309,14 @@ const ColumnTable<DecisionRow>& decision_table() {
     ColumnTable<DecisionRow> t{"decisions", "talisman.decision/1", {}, {}};
     for (const DecisionColumns& part :
          {what_was_done(), warp_columns(), placement_columns(), what_is_shown(), late_columns(),
-          geometric_columns(), photometric_columns(), remaining_fiducials(), cost_columns()})
+          geometric_columns(), photometric_columns(), remaining_fiducials(), chunk_columns(), cost_columns()})
       t.columns.insert(t.columns.end(), part.begin(), part.end());
     t.groups = {{"sprite", "of layers whose sprite is shown", true,
                  [](const DecisionRow& r) { return r.placement != nullptr; }},
                 {"fiducials", "of layers in view that have an old sprite", true,
-                 [](const DecisionRow& r) { return assessment(r).has_sprite && assessment(r).in_view; }}};
+                 [](const DecisionRow& r) { return assessment(r).has_sprite && assessment(r).in_view; }},
+                {"chunks", "with --refresh chunks, of layers some of whose chunks are drawn or were", false,
+                 [](const DecisionRow& r) { return r.decision.chunks.has_value(); }}};
     return t;
   }();
   return table;

@@ -25,7 +25,8 @@ class DecisionFilter {
     if (lines_ != DecisionLines::Changed) return lines_ == DecisionLines::All;
     now_[row.name] = row.decision.action;
     const auto before = before_.find(row.name);
-    return row.decision.action == regulator::Action::Rerender || before == before_.end() ||
+    return row.decision.action == regulator::Action::Rerender ||
+           row.decision.action == regulator::Action::Refresh || before == before_.end() ||
            before->second != row.decision.action;
   }
 

@@ -117,6 +117,7 @@ std::string frame_or(const std::optional<int>& frame, const char* otherwise) {
 std::string in_words(const std::string& decision) {
   if (decision == "rerender") return "drawn again";
   if (decision == "reuse") return "its sprite is used again";
+  if (decision == "refresh") return "some chunks of its sprite are drawn again";
   return "not shown";
 }
 

@@ -272,6 +272,24 @@ FrameColumns frame_latency() {
           [](auto& l) -> auto& { return l.latency->layers_missing; })};
 }
 
+FrameColumns frame_refresh() {
+  return {stored<FrameLine>(
+              "refreshed_layers", "refresh/layers", "layers", "chunks of which were drawn alone",
+              [](auto& l) -> auto& { return l.refresh->layers; }),
+          stored<FrameLine>(
+              "refreshed_chunks", "refresh/chunks", "32×32 chunks", "that were",
+              [](auto& l) -> auto& { return l.refresh->chunks; }),
+          stored<FrameLine>(
+              "refresh_step_px", "refresh/step_px", "px",
+              "bound of the step between chunks of different age that are shown beside each other, at most",
+              [](auto& l) -> auto& { return l.refresh->step_px; }),
+          stored<FrameLine>(
+              "refresh_torn_borders", "refresh/torn_borders", "groups of triangles",
+              "at such borders, whose step may be more than geometric_px: an outline there may be lost or "
+              "doubled",
+              [](auto& l) -> auto& { return l.refresh->torn_borders; })};
+}
+
 FrameColumns light_layers() {
   return {stored<FrameLine>(
       "light_beside_px", "light_layers/beside_px", "px",
@@ -349,6 +367,8 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
       {"predictive", "with --policy predictive", false,
        [](const FrameLine& l) { return l.predictive.has_value(); },
        [](FrameLine& l) { l.predictive.emplace(); }},
+      {"refresh", "with --refresh chunks", false, [](const FrameLine& l) { return l.refresh.has_value(); },
+       [](FrameLine& l) { l.refresh.emplace(); }},
       {"latency", "with --latency-ms", false, [](const FrameLine& l) { return l.latency.has_value(); },
        [](FrameLine& l) { l.latency.emplace(); }},
       {"budget_gap", "with --budget-gap", false, [](const FrameLine& l) { return l.budget_gap.has_value(); },
@@ -366,7 +386,7 @@ const ColumnTable<FrameLine>& frame_table() {
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
           written_pictures(), light_layers(), moving_pictures(), seams(), frame_expressions(),
-          frame_budget_gap(), frame_lookahead(), frame_predictive(), frame_latency(),
+          frame_budget_gap(), frame_lookahead(), frame_predictive(), frame_refresh(), frame_latency(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

@@ -85,6 +85,7 @@ FrameLine line_of(const FrameReport& report) {
       line.light_beside_px = std::max(line.light_beside_px.value_or(0), *shown.beside_base_px);
   line.budget_gap = report.budget_gap;
   line.lookahead = report.lookahead;
+  line.refresh = report.refresh;
   line.predictive = report.predictive;
   if (line.predictive) {  // the rest depends on which frames were drawn
     line.predictive->buffer_bytes = 0;

@@ -94,6 +94,7 @@ struct FrameLine {
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
   std::optional<PredictiveReport> predictive;      ///< of that policy, without what drawing adds
   std::optional<LookaheadReport> lookahead;        ///< of the policies that look ahead
+  std::optional<RefreshReport> refresh;            ///< with --refresh chunks
   std::optional<LatencyReport> latency;            ///< of a run that knows old poses only
   FrameTimes times;                                ///< not in frames.jsonl
 

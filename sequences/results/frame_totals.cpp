@@ -70,6 +70,14 @@ void add_latency(const LatencyReport& late, LatencyTotals& totals) {
   totals.most.layers_missing = std::max(totals.most.layers_missing, late.layers_missing);
 }
 
+void add_refresh_of(const RefreshReport& frame, std::optional<RefreshReport>& sum) {
+  if (!sum) sum.emplace();
+  sum->layers += frame.layers;
+  sum->chunks += frame.chunks;
+  sum->step_px = std::max(sum->step_px, frame.step_px);
+  sum->torn_borders += frame.torn_borders;
+}
+
 void add_comparison(const Quality& quality, MeanQuality& sum) {
   sum.mse += std::isfinite(quality.psnr_db) ? 255.0 * 255.0 / std::pow(10.0, quality.psnr_db / 10) : 0;
   sum.ssim += quality.ssim;
@@ -86,6 +94,7 @@ void FrameTotals::add(const FrameLine& line) {
   if (line.visibility) add_sort(*line.visibility, visibility_, resolved_);
   if (line.budget_gap) add_gap(*line.budget_gap, gap_);
   if (line.latency) add_latency(*line.latency, latency_);
+  if (line.refresh) add_refresh_of(*line.refresh, refresh_);
   if (line.upload_bytes) upload_bytes_ = upload_bytes_.value_or(0) + *line.upload_bytes;
   if (line.predictive) surprises_ = surprises_.value_or(0) + line.predictive->surprises;
   if (line.lookahead) {

@@ -63,6 +63,8 @@ class FrameTotals {
   const std::optional<LookaheadReport>& lookahead() const { return lookahead_; }
   const std::optional<std::int64_t>& surprises() const { return surprises_; }  ///< of policy predictive
   const LatencyTotals& latency() const { return latency_; }
+  /// Layers and chunks of all frames, the largest step. Empty where no chunks are drawn alone.
+  const std::optional<RefreshReport>& refresh() const { return refresh_; }
   double slowest_sort_ms() const { return slowest_sort_ms_; }
   /// Empty where no frame was compared.
   std::optional<MeanQuality> quality(Quality FrameQuality::*which) const;
@@ -83,6 +85,7 @@ class FrameTotals {
   std::optional<LookaheadReport> lookahead_;
   std::optional<std::int64_t> surprises_;
   LatencyTotals latency_;
+  std::optional<RefreshReport> refresh_;
   double slowest_sort_ms_ = 0;
   MeanQuality of_total_, of_reuse_, of_resampling_;  ///< the sums
 };

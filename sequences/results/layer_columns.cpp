@@ -18,6 +18,11 @@ std::vector<Column<LayerRow>> columns_of_layer() {
       of_layer("parts", "parts", "that it is made of", [](const LayerRow& r) { return r.layer.parts; }),
       of_layer("polygons", "triangles", "of these", [](const LayerRow& r) { return r.layer.polygons; }),
       of_layer("renders", "renders", "of its own sprite", [](const LayerRow& r) { return r.layer.renders; }),
+      of_layer("refreshes", "refreshes",
+               "in which some chunks alone were drawn; absent without --refresh chunks",
+               [](const LayerRow& r) {
+                 return r.layer.refreshes ? value_of(*r.layer.refreshes) : Value(Absent{});
+               }),
       of_layer("merged_renders", "renders", "of aggregates in which it took part; not among renders",
                [](const LayerRow& r) { return r.layer.merged_renders; }),
       of_layer("aggregate", "", "it draws several layers whose order is a cycle",
@@ -39,7 +44,8 @@ std::vector<Column<LayerRow>> columns_of_layer() {
       of_layer("frames_shown", "frames",
                "in which its sprite is shown; of a shadow map: in which a layer in view looks it up",
                [](const LayerRow& r) { return r.layer.frames_shown; }),
-      of_layer("update_rate", "", "renders over the frames of the run",
+      of_layer("update_rate", "",
+               "renders over the frames of the run; chunks drawn alone count by their share of those stored",
                [](const LayerRow& r) { return r.layer.update_rate(r.frames); }),
       of_layer("mean_geometric_px", "px",
                "error of what is displayed, mean over the frames in which it is shown",

@@ -45,7 +45,7 @@ void budget(Budget& b, const Visit& visit) {
 template <typename Options, typename Visit>
 void regulator(Options& options, const Visit& visit) {
   auto& [policy, hold_frames, stagger, blend_frames, color_warp, settle_frames, of_thresholds, lookahead,
-         of_budget, predictive, of_regroup, latency, kalman] = options;
+         of_budget, predictive, of_regroup, refresh, latency, kalman] = options;
   visit("policy", policy);
   visit("hold_frames", hold_frames);
   visit("stagger", stagger);
@@ -69,6 +69,7 @@ void regulator(Options& options, const Visit& visit) {
   visit("regroup_ceiling_ms", ceiling);
   visit("regroup_dwell", dwell);
   visit("regroup_recency", recency);
+  visit("refresh", refresh);
   auto& [render_ms, warp_ms, latency_predict] = latency;
   visit("latency_ms", render_ms);
   visit("latency_warp_ms", warp_ms);

@@ -25,6 +25,7 @@ Json setting_value(regulator::Joining joining) { return regulator::name(joining)
 Json setting_value(regulator::Intervals intervals) { return regulator::name(intervals); }
 Json setting_value(regulator::MotionNorm norm) { return regulator::name(norm); }
 Json setting_value(regulator::Regroup by) { return regulator::name(by); }
+Json setting_value(regulator::Refresh refresh) { return regulator::name(refresh); }
 Json setting_value(regulator::RegroupPrices prices) { return regulator::name(prices); }
 Json setting_value(regulator::Prediction prediction) { return regulator::name(prediction); }
 Json setting_value(regulator::ChoiceRule rule) { return regulator::name(rule); }

@@ -7,6 +7,7 @@
 
 #include "regulator/profile.h"
 #include "sequences/pipeline/aggregates.h"
+#include "sequences/pipeline/refresh/refresh.h"
 #include "sequences/pipeline/run_effects.h"
 #include "sequences/results/column_json.h"
 #include "sequences/results/column_tables.h"
@@ -120,6 +121,12 @@ void add_render(const regulator::LayerDecision& d, const layers::Layer& drawn, l
   row.render_ms += render_ms(0, filled * static_cast<double>(d.cost.pixels - own_pixels));
 }
 
+void add_refresh(const regulator::LayerDecision& d, double filled, LayerSummary& layer) {
+  ++*layer.refreshes;
+  layer.share_refreshed += d.chunks->share();
+  layer.render_ms += render_ms(d.cost.polygons, filled * static_cast<double>(d.cost.pixels));
+}
+
 }  // namespace
 
 Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
@@ -136,6 +143,8 @@ Summary start_summary(const Pipeline& pipeline, const std::string& sequence) {
   summary.effect_passes.assign(summary.effects.size(), 0);
   for (const layers::Layer& layer : pipeline.authored)
     summary.layers.push_back(row_of(layer.name, static_cast<int>(layer.parts.size()), layer.polygons, false));
+  if (refreshes_chunks(pipeline))
+    for (LayerSummary& layer : summary.layers) layer.refreshes = 0;
   return summary;
 }
 
@@ -156,6 +165,7 @@ void add_decisions(Summary& summary, const FrameReport& report, const PipelineSt
     LayerSummary& layer = summary.layers[row_in_run(state, d.layer)];
     add_decision(d, state.memory[d.layer].placement.size_px, layer);
     any_deferred = any_deferred || d.deferred;
+    if (d.action == regulator::Action::Refresh) add_refresh(d, report.depth_complexity, layer);
     if (d.action != regulator::Action::Rerender) continue;
     const layers::SpritePlacement& placement = state.memory[d.layer].placement;
     layer.is_capped |= placement.resolution_reduced;

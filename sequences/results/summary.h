@@ -26,21 +26,24 @@ struct LayerSummary {
   int renders = 0, frames_shown = 0;
   ExactSum sum_geometric_px;  ///< over the frames in which it was shown
   double max_geometric_px = 0;
-  layers::ivec2 sprite_px{0, 0};  ///< largest sprite, by area
-  ExactSum sum_resolution;        ///< over the frames in which it was shown
-  int merged_renders = 0;         ///< renders of aggregates in which it took part; not among `renders`
-  bool is_capped = false;         ///< a sprite had fewer texels than asked for, by max_sprite_px
-  bool is_aggregate = false;      ///< counted with its members where rates are averaged
-  bool is_shadow_map = false;     ///< not counted where rates are averaged
-  bool is_mirror = false;         ///< likewise: the pictures that a layer mirrors, drawn with its sprite
-  ExactSum render_ms;             ///< modelled (results/summary.cpp), of its renders
-  ReasonTally reasons{};          ///< of its renders
-  int frames_deferred = 0;        ///< worth drawing, but the budget did not suffice
-  int frames_over_budget = 0;     ///< of these: dearer than the whole budget
-  double update_rate(int frames) const { return frames > 0 ? static_cast<double>(renders) / frames : 0; }
+  layers::ivec2 sprite_px{0, 0};   ///< largest sprite, by area
+  ExactSum sum_resolution;         ///< over the frames in which it was shown
+  std::optional<int> refreshes{};  ///< in which chunks alone were drawn; empty: the run draws none
+  ExactSum share_refreshed{};      ///< of the stored chunks, over these
+  int merged_renders = 0;          ///< renders of aggregates in which it took part; not among `renders`
+  bool is_capped = false;          ///< a sprite had fewer texels than asked for, by max_sprite_px
+  bool is_aggregate = false;       ///< counted with its members where rates are averaged
+  bool is_shadow_map = false;      ///< not counted where rates are averaged
+  bool is_mirror = false;          ///< likewise: the pictures that a layer mirrors, drawn with its sprite
+  ExactSum render_ms;              ///< modelled (results/summary.cpp), of its renders
+  ReasonTally reasons{};           ///< of its renders
+  int frames_deferred = 0;         ///< worth drawing, but the budget did not suffice
+  int frames_over_budget = 0;      ///< of these: dearer than the whole budget
+  /// Chunks that are drawn alone count by their share.
+  double update_rate(int frames) const { return frames > 0 ? (renders + share_refreshed) / frames : 0; }
   /// The share of frames in which it was drawn anew, alone or in an aggregate.
   double drawn_rate(int frames) const {
-    return frames > 0 ? static_cast<double>(renders + merged_renders) / frames : 0;
+    return frames > 0 ? (renders + merged_renders + share_refreshed) / frames : 0;
   }
   /// Without a bound (warp::kHugePx) where one of them has none.
   double mean_geometric_px() const {

@@ -143,6 +143,12 @@ std::string special_rows(const RunRow& run) {
   if (const std::int64_t surprises = run.sums.surprises().value_or(0); surprises > 0)
     text += formatted("  surprises         %lld: the plan was dropped, and the frame drawn whole\n",
                       static_cast<long long>(surprises));
+  if (const std::optional<RefreshReport>& refresh = run.sums.refresh())
+    text += formatted(
+        "  refreshed         %s chunks alone, %d times; steps at their borders at most %.3f px,\n"
+        "                    over the threshold at %d groups of triangles\n",
+        magnitude(static_cast<double>(refresh->chunks)).c_str(), refresh->layers, refresh->step_px,
+        refresh->torn_borders);
   if (const LatencyTotals& late = run.sums.latency(); late.frames > 0)
     text += formatted(
         "  old poses         the camera as shown is off by %.3f deg in the mean, %.3f at most\n"

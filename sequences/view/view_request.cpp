@@ -111,6 +111,7 @@ const std::vector<std::string>& settable_options() {
                                                  "regroup-prices",
                                                  "regroup-ceiling-ms",
                                                  "regroup-dwell",
+                                                 "refresh",
                                                  "budget-polygons",
                                                  "budget-pixels",
                                                  "budget-chunks",

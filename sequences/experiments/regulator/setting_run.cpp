@@ -5,6 +5,7 @@
 #include <numeric>
 #include <utility>
 
+#include "sequences/experiments/regulator/cut_layers.h"
 #include "sequences/experiments/statistics.h"
 
 namespace talisman::sequences {
@@ -26,7 +27,7 @@ Timing timing_of(const std::vector<FrameLine>& lines, double FrameTimes::*stage)
 
 SettingRun::SettingRun(const Sequence& sequence, Settings settings, const RegulatorSetting& setting)
     : setting_(setting),
-      seamed_(sequence, with(settings, setting)),
+      seamed_(with_cut_layers(sequence, setting.cut), with(settings, setting)),
       pipeline_(make_pipeline(*seamed_.sequence().scene, seamed_.sequence().layers,
                               with(std::move(settings), setting))),
       state_(pipeline_),

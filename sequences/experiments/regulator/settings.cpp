@@ -39,6 +39,22 @@ void add_thresholds(std::vector<RegulatorSetting>& settings, const RegulatorOpti
   }
 }
 
+/// Less of a sprite than all of it: its chunks, or pieces of its layer.
+void add_parts_of_sprites(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base) {
+  for (const double px : compared_thresholds()) {
+    RegulatorOptions options = under(base, Policy::Threshold);
+    options.thresholds.geometric_px = px;
+    options.refresh = regulator::Refresh::Chunks;
+    settings.push_back({"threshold chunks", "px", px, options});
+  }
+  for (const int pieces : {2, 4, 8})
+    for (const double px : {1.0, 4.0}) {
+      RegulatorOptions options = under(base, Policy::Threshold);
+      options.thresholds.geometric_px = px;
+      settings.push_back({"threshold in " + std::to_string(pieces), "px", px, options, pieces});
+    }
+}
+
 /// What is done against the steps of sprites that are drawn again [LS97 8].
 void add_remedies(std::vector<RegulatorSetting>& settings, const RegulatorOptions& base) {
   for (const int n : compared_holds()) {
@@ -93,6 +109,7 @@ std::vector<RegulatorSetting> regulator_settings(const RegulatorOptions& base, d
   add_periods(settings, base, Policy::Hold);
   add_periods(settings, base, Policy::Interpolate);
   add_thresholds(settings, base, Policy::Threshold, "threshold");
+  add_parts_of_sprites(settings, base);
   add_settling(settings, base);
   add_remedies(settings, base);
   add_thresholds(settings, base, Policy::Lookahead, "lookahead " + std::to_string(kComparedLookahead));

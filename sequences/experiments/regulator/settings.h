@@ -6,6 +6,8 @@
 ///   reference                                   every layer, every frame: the truth, and the full price
 ///   hold, interpolate      N = 2, 3, 5, 8       frames
 ///   threshold, lookahead 16, oracle             0.25 … 8 px in octaves, the same for all three
+///   threshold chunks                            the same thresholds; only the chunks over the bound are drawn again
+///   threshold in 2, 4, 8   1, 4 px              their rival: the same layers, cut into so many (cut_layers.h)
 ///   interpolate staggered  N = 2, 3, 5, 8       frames; each layer on a beat of its own
 ///   threshold blended      K = 1, 2, 4          frames over which a fresh sprite fades in, at the sequence's own
 ///                                               threshold (sequences/pipeline/cross_fading.h)
@@ -28,6 +30,7 @@ struct RegulatorSetting {
   std::string unit;    ///< of `value`: "px", "frames", "%"; empty: there is no knob
   double value = 0;    ///< the knob
   regulator::RegulatorOptions options;
+  int cut = 1;                ///< layers of one part are cut into so many
   std::string knob() const;   ///< "4 px", "N 3", "10 %", or empty
   std::string words() const;  ///< "threshold 4 px"
 };

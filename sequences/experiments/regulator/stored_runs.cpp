@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "sequences/content/seams.h"
+#include "sequences/experiments/regulator/cut_layers.h"
 #include "sequences/experiments/setting_file.h"
 #include "sequences/files/errors.h"
 #include "sequences/files/folders.h"
@@ -43,7 +44,7 @@ void store_runs(const Sequence& sequence, RegulatorReport& report, const std::st
     settings.regulator = result.setting.options;
     const std::string file = "runs/" + file_name_of(result.setting.words()) + ".html",
                       page = dir + "/" + file;
-    store_run(sequence, settings, report.frames, page + ".plan", page);
+    store_run(with_cut_layers(sequence, result.setting.cut), settings, report.frames, page + ".plan", page);
     report.runs.push_back(file);
     report.runs_mb += double(std::filesystem::file_size(page)) / 1e6;
   }

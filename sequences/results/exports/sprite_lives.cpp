@@ -23,7 +23,7 @@ void SpriteLives::add(const nlohmann::ordered_json& decision) {
   if (life != alive_.end() && !goes_on) end(layer, "");
   if (what == "drop") return end(layer, reason);
   const double shown_px = decision.at("geometric_px").is_null() ? 0 : decision["geometric_px"].get<double>();
-  if (what == "reuse" && goes_on) {
+  if ((what == "reuse" || what == "refresh") && goes_on) {
     life->second.end = frame + 1;
     life->second.max_geometric_px = std::max(life->second.max_geometric_px, shown_px);
     return;

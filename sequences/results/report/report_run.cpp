@@ -83,7 +83,7 @@ class DecisionTally {
     const double geometric_px = cell_or_0(table.cell(row, "geometric_px"));
     LayerCounts& layer = layer_of(name);
     const ReasonKind kind = kind_of_reason(reason);
-    ++(decision == "rerender" ? layer.renders : decision == "reuse" ? layer.reuses : layer.drops);
+    ++(decision == "rerender" ? layer.renders : decision == "drop" ? layer.drops : layer.reuses);
     layer.polygons += cell_or_0(table.cell(row, "cost_polygons"));
     layer.pixels += cell_or_0(table.cell(row, "cost_pixels"));
     if (decision == "rerender") ++layer.why[kind.words];

@@ -74,7 +74,7 @@ TEST(RegulatorSettings, AreValidDistinctAndBeginWithTheReference) {
     names.insert(setting.series + " " + setting.knob());
   }
   EXPECT_EQ(names.size(), settings.size());
-  EXPECT_EQ(settings.size(), 1u + 4 + 4 + 6 + 4 + 3 + 3 + 6 + 6 + 5 + 5);
+  EXPECT_EQ(settings.size(), 1u + 4 + 4 + 6 + 6 + 3 * 2 + 4 + 3 + 3 + 6 + 6 + 5 + 5);
 }
 
 TEST(RegulatorSettings, BudgetsAreSharesOfTheReference) {

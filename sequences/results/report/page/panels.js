@@ -16,7 +16,8 @@ const kFiducials = [
 const kCauses = {camera_px: "camera", own_motion_px: "own motion", light_px: "light", other_layers_px: "other layers"};
 const kOfChanges = ["since_frame", "error_px", "separable", ...Object.keys(kCauses)];
 const kWithLimits = ["threshold", "lookahead", "oracle"];
-const kDone = {rerender: "Drawn again", reuse: "Its sprite is used again", drop: "Not shown"};
+const kDone = {rerender: "Drawn again", reuse: "Its sprite is used again",
+               refresh: "Some chunks of its sprite are drawn again", drop: "Not shown"};
 
 // The limit of one decision; null: not regulated.
 function limitOf(run, fiducial, row) {
