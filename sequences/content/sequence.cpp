@@ -130,9 +130,12 @@ Factoring found_layers(Sequence& sequence, BuiltScene& built, const std::vector<
                   found.order.size(), found.order.size() == 1 ? "" : "s",
                   found.order.size() == 1 ? "is" : "are", looked_at, sequence.frames));
   for (const CutEntry& cut : with_cuts.cuts)
-    sequence.notes.push_back(formatted("part '%s' is cut into %d: one warp would not serve",
+    sequence.notes.push_back(formatted("part '%s' is cut into %d, with seam: auto: one warp would not serve",
                                        layers::name_of_glob(cut.parts).c_str(), cut.into));
-  if (with_cuts.scene) built.scene = std::move(*with_cuts.scene);
+  if (with_cuts.scene) {
+    built.scene = std::move(*with_cuts.scene);
+    sequence.seam = Seam::Auto;  // else cracks open between what was whole
+  }
   return std::move(found);
 }
 

@@ -52,7 +52,7 @@ std::string cuts_yaml(const std::vector<CutEntry>& entries, const std::string& i
   for (const CutEntry& entry : entries)
     yaml +=
         "  - {parts: " + yaml_text(in_model + entry.parts) + ", into: " + std::to_string(entry.into) + "}\n";
-  return yaml;
+  return yaml + "seam: auto\n";
 }
 
 }  // namespace talisman::sequences

@@ -27,7 +27,8 @@ const Table<CutEntry>& cut_keys();
 /// deforms.
 void apply_cuts(const std::vector<CutEntry>& entries, layers::Scene& scene);
 
-/// `cuts:` to paste; `in_model` as of layers_yaml. Empty where there are none.
+/// `cuts:` to paste, and `seam: auto`, without which cracks open between pieces; `in_model` as of layers_yaml. Empty where
+/// there are none.
 std::string cuts_yaml(const std::vector<CutEntry>& entries, const std::string& in_model = "");
 
 /// A layer is worth a look if it takes at least this share of all work and is drawn in at least that share of the frames.
@@ -44,7 +45,7 @@ inline constexpr int kCutRounds = 3;
 ///
 ///   1  what is the dearest of the layers that are found, and often drawn, is planned part by part, whole and cut
 ///   2  cuts that save kCutMustSave of their part's work are made, and the scene is factored again
-///   3  the cuts stay if that costs less by kCutsMustSave; then the pieces may be cut again
+///   3  the cuts stay if that, with seams (layers/seam.h), costs less by kCutsMustSave; then the pieces may be cut again
 struct CutStudy {
   FactoringStudy study;
   std::vector<CutEntry> cuts{};          ///< none: nothing is worth it

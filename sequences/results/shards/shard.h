@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "sequences/results/planned.h"
 #include "sequences/results/run_options.h"
 

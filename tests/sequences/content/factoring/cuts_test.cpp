@@ -142,10 +142,26 @@ TEST_F(CutFile, WhatCannotBeCutIsRefused) {
   EXPECT_THAT(refusal("cuts: [{into: 4}]\n"), HasSubstr("parts"));
 }
 
+/// A land of one part, over which the eye flies low: its pieces are layers, and no crack opens between them.
+TEST_F(CutFile, WhatIsCutUnaskedReachesOverItsEdges) {
+  const std::string land =
+      "frames: 24\nfps: 24\ndisplay: [100, 100]\n"
+      "camera: {fov_deg: 60, near_m: 0.1, flight: [{t: 0, position: [0, 2, 40], target: [0, 1, 0]},"
+      " {t: 1, position: [0, 2, 34], target: [0, 1, -6]}]}\n"
+      "shapes:\n  - {id: land, plane: [60, 80], segments: 32, color: [0.2, 0.4, 0.1]}\n"
+      "regulator: {geometric_px: 1}\n";
+  const Sequence sequence =
+      sequences::load_sequence(folder_.write("land.yaml", land + "layers: {auto: velocity}\n"));
+  ASSERT_NE(sequence.scene->parts.front().name, "land");
+  EXPECT_EQ(sequence.seam, sequences::Seam::Auto);
+  EXPECT_TRUE(sequence.scene->parts.back().is_seam);
+  EXPECT_THAT(sequence.notes, ::testing::Contains(HasSubstr("part 'land' is cut into")));
+}
+
 TEST(Cuts, AreWrittenAsTheyAreRead) {
   EXPECT_EQ(sequences::cuts_yaml({}), "");
   EXPECT_EQ(sequences::cuts_yaml({{"hall", 4, "", 0}, {"a: b", 2, "", 0}}, "house/"),
-            "cuts:\n  - {parts: house/hall, into: 4}\n  - {parts: \"house/a: b\", into: 2}\n");
+            "cuts:\n  - {parts: house/hall, into: 4}\n  - {parts: \"house/a: b\", into: 2}\nseam: auto\n");
 }
 
 }  // namespace
