@@ -22,7 +22,7 @@ class PartNames {
  public:
   explicit PartNames(const Scene& scene) : scene_(scene) {
     for (std::size_t i = 0; i < scene.parts.size(); ++i)
-      by_name_[scene.parts[i].name].push_back(static_cast<int>(i));
+      if (!scene.parts[i].is_level) by_name_[scene.parts[i].name].push_back(static_cast<int>(i));
   }
 
   std::vector<int> matching(const std::string& glob) const {
@@ -32,7 +32,8 @@ class PartNames {
     }
     std::vector<int> parts;
     for (std::size_t i = 0; i < scene_.parts.size(); ++i)
-      if (!scene_.parts[i].is_seam && glob_matches(glob, scene_.parts[i].name))  // seams by their names alone
+      if (!scene_.parts[i].is_seam && !scene_.parts[i].is_level &&  // seams by their names alone
+          glob_matches(glob, scene_.parts[i].name))
         parts.push_back(static_cast<int>(i));
     return parts;
   }

@@ -238,6 +238,8 @@ struct Part {
   int skin = -1;  ///< index into Scene::skins; -1: rigid
   /// A copy of what lies behind a shared edge in another layer, so that no crack opens there (layers/seam.h).
   bool is_seam = false;
+  /// A coarser level of another part, drawn in its place (layers/lod/levels.h); no layer takes it.
+  bool is_level = false;
 };
 
 struct CameraState {

@@ -57,20 +57,6 @@ std::string excess(const LayerCost& cost, const Budget& left, const RegulatorOpt
   return {};
 }
 
-/// "; resolution 0.81", or nothing at full resolution.
-std::string at_resolution(double resolution) {
-  if (resolution == 1) return {};
-  char text[40];
-  std::snprintf(text, sizeof text, "; resolution %.3g", resolution);
-  return text;
-}
-
-/// The old sprite where a render is not worth it or not affordable: warped if its warp is sound.
-LayerDecision keep(const LayerAssessment& layer, std::string reason) {
-  if (layer.identical || has_sound_fit(layer)) return reuse(layer, std::move(reason));
-  return reuse_in_place(layer, reason + ", no warp");
-}
-
 /// Decisions that do not depend on the budget; candidates stay as "cut-off" until they are ranked.
 LayerDecision decide_without_budget(const LayerAssessment& layer, const RegulatorOptions& options) {
   if (!layer.in_view) return drop(layer);
@@ -79,14 +65,14 @@ LayerDecision decide_without_budget(const LayerAssessment& layer, const Regulato
   const double benefit = benefit_px(layer);
   const double cutoff = options.budget.cutoff_px;
   if (is_candidate(layer, options)) {
-    LayerDecision old = keep(
+    LayerDecision old = keep_old(
         layer, benefit > cutoff ? comparison("deferred: old shadow map; benefit", benefit, ">", cutoff, "px")
                                 : "deferred: old shadow map; " + settle_reason(layer));
     old.deferred = true;
     return old;
   }
-  if (benefit > cutoff) return keep(layer, "deferred: max_update_rate");
-  return keep(layer, comparison("benefit", benefit, "<=", cutoff, "px"));
+  if (benefit > cutoff) return keep_old(layer, "deferred: max_update_rate");
+  return keep_old(layer, comparison("benefit", benefit, "<=", cutoff, "px"));
 }
 
 using Maps = std::span<const MapAssessment>;
@@ -212,7 +198,8 @@ void decide_candidates(std::span<const LayerAssessment> assessments, const Regul
       continue;
     }
     const Budget& lacking = left.affords(candidate.cost) ? in_the_end : left;
-    decision = keep(layer, "deferred: budget, " + excess(candidate.cost, lacking, options) + "; " + detail);
+    decision =
+        keep_old(layer, "deferred: budget, " + excess(candidate.cost, lacking, options) + "; " + detail);
     defer(decision, candidate.cost, lacking, options);
   }
 }

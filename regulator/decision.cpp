@@ -2,7 +2,10 @@
 #include "regulator/decision.h"
 
 #include <charconv>
+#include <cstdio>
 #include <utility>
+
+#include "regulator/policies.h"
 
 namespace talisman::regulator {
 
@@ -60,6 +63,18 @@ LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason) {
   decision.shown_color = layers::dvec3(1.0);
   decision.shown_geometric_px = layer.held_geometric_px;
   return decision;
+}
+
+LayerDecision keep_old(const LayerAssessment& layer, std::string reason) {
+  if (layer.identical || has_sound_fit(layer)) return reuse(layer, std::move(reason));
+  return reuse_in_place(layer, reason + ", no warp");
+}
+
+std::string at_resolution(double resolution) {
+  if (resolution == 1) return {};
+  char text[40];
+  std::snprintf(text, sizeof text, "; resolution %.3g", resolution);
+  return text;
 }
 
 LayerDecision decide_every_frame(const LayerAssessment& layer, std::string reason) {

@@ -24,6 +24,11 @@ LayerDecision reuse(const LayerAssessment& layer, std::string reason);
 /// The old sprite, left where it was.
 LayerDecision reuse_in_place(const LayerAssessment& layer, std::string reason);
 
+/// The old sprite where a render is not worth it or not affordable: warped if its warp is sound.
+LayerDecision keep_old(const LayerAssessment& layer, std::string reason);
+/// "; resolution 0.81", or nothing at full resolution.
+std::string at_resolution(double resolution);
+
 /// "geometric 4.7 > 4 px" (relation is one of ">" "<=" "<" ">=").
 std::string comparison(const char* what, double value, const char* relation, double limit,
                        const char* unit = "");

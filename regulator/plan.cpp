@@ -9,6 +9,7 @@
 #include "layers/check.h"
 #include "regulator/budget.h"
 #include "regulator/decision.h"
+#include "regulator/lod/decide_lod.h"
 #include "regulator/policies.h"
 #include "regulator/shadow_maps.h"
 
@@ -131,19 +132,23 @@ FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, cons
 }
 
 FramePlan regulate(const FrameBeat& beat, std::span<const LayerAssessment> assessments,
-                   const RegulatorOptions& options, std::span<const MapAssessment> maps) {
+                   const RegulatorOptions& options, std::span<const MapAssessment> maps, LodSolver* solver) {
   TALISMAN_CHECK_EQ(first_defect(options), std::string());
-  FramePlan plan{beat.frame, {}, {}};
+  if (chooses_levels(options) && options.lod.by == LodSelector::Optimise)
+    return decide_lod(beat.frame, assessments, options, maps, solver);
+  FramePlan plan{beat.frame, {}, {}, {}};
   if (options.policy == Policy::Budget) {
     BudgetDecisions decided = decide_budget(assessments, options, maps);
     plan.decisions = std::move(decided.layers);
     plan.maps = std::move(decided.maps);
+    if (chooses_levels(options)) say_levels(assessments, plan.decisions);
     return plan;
   }
   plan.decisions.reserve(assessments.size());
   for (const LayerAssessment& layer : assessments) plan.decisions.push_back(decide(beat, layer, options));
   plan.maps = decide_maps(maps, plan.decisions, options);
   show_held_maps(maps, plan.maps, plan.decisions);
+  if (chooses_levels(options)) say_levels(assessments, plan.decisions);
   return plan;
 }
 
@@ -213,6 +218,7 @@ std::string first_defect(const RegulatorOptions& options) {
              std::to_string(kLongestCut_frames) + " where intervals is data";
   }
   if (std::string defect = first_defect(options.regroup); !defect.empty()) return defect;
+  if (std::string defect = first_defect(options.lod); !defect.empty()) return defect;
   if (std::string defect = first_defect(options.latency); !defect.empty()) return defect;
   if (std::string defect = first_defect(options.kalman); !defect.empty()) return defect;
   return first_defect(options.budget);
@@ -229,7 +235,21 @@ bool regroups(const RegulatorOptions& options) {
 bool refreshes_chunks(const RegulatorOptions& options) {
   return options.refresh == Refresh::Chunks && options.policy == Policy::Threshold &&
          options.thresholds.geometric_px > 0 && options.blend_frames == 0 && !regroups(options) &&
-         !is_late(options.latency);
+         !is_late(options.latency) && !chooses_levels(options);
+}
+
+bool chooses_levels(const RegulatorOptions& options) {
+  switch (options.lod.by) {
+    case LodSelector::None:
+      return false;
+    case LodSelector::Optimise:
+      return options.policy == Policy::Budget;
+    case LodSelector::Static:
+    case LodSelector::Feedback:
+      return options.policy == Policy::Reference || options.policy == Policy::Threshold ||
+             options.policy == Policy::Budget;
+  }
+  return false;
 }
 
 bool asks_for_light(const RegulatorOptions& options) {

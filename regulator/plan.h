@@ -19,6 +19,7 @@
 #include "fiducials/fiducials.h"
 #include "layers/predict_kalman.h"
 #include "regulator/latency_options.h"
+#include "regulator/lod/lod_options.h"
 #include "regulator/predictive_options.h"
 #include "regulator/refresh_options.h"
 #include "regulator/regroup.h"
@@ -73,6 +74,14 @@ struct ChunkAssessment {
       false;  ///< some were drawn alone before: then these are the assessment's own fit and fiducials, too
 };
 
+/// One way to draw a layer now (layers/lod/levels.h).
+struct LevelChoice {
+  int level = 0;          ///< of detail; 0: the finest
+  double resolution = 1;  ///< relative to what its author asks for
+  LayerCost cost;
+  double error_px = 0;  ///< of the level, how far its surface may be from that of the finest on the display
+};
+
 /// What the regulator knows about one layer at one frame.
 struct LayerAssessment {
   int layer = -1;
@@ -94,6 +103,12 @@ struct LayerAssessment {
   std::string new_picture{};  ///< what its sprite shows an old frame of, in words; empty: nothing
   std::optional<ChunkAssessment>
       chunks{};  ///< with Refresh::Chunks, where the sprite is off as a whole, or mixed
+  /// The ways to draw it now, the finest at full resolution first; empty: `cost` alone. Only with RegulatorOptions::lod.
+  std::vector<LevelChoice> levels{};
+  int level = 0;               ///< that would be drawn now; its cost is `cost`
+  int level_then = 0;          ///< of its sprite
+  double level_then_px = 0;    ///< error of that now, as LevelChoice::error_px
+  bool may_be_skipped = true;  ///< nothing is laid over it that would be seen without it
 };
 
 /// The budget of a frame that is not limited.
@@ -182,6 +197,7 @@ struct RegulatorOptions {
   PredictiveOptions predictive;
   RegroupOptions regroup;
   Refresh refresh = Refresh::Sprite;  ///< what is drawn anew where only places of a sprite are too far off
+  LodOptions lod;                     ///< Reference, Threshold, Budget
   LatencyOptions latency;             ///< all policies
   layers::KalmanNoise kalman;         ///< of Prediction::Kalman, wherever it is
   bool operator==(const RegulatorOptions&) const = default;
@@ -208,15 +224,28 @@ struct LayerDecision {
   bool over_budget = false;            ///< of these: dearer than the whole budget of a frame
   bool settled = false;                ///< drawn because it is at rest (regulator/settle.h): as of this frame
   std::optional<ChunkShare>
-      chunks{};  ///< Refresh, and Reuse of a sprite whose chunks are of several instants
+      chunks{};          ///< Refresh, and Reuse of a sprite whose chunks are of several instants
+  int level = 0;         ///< of detail, of what is shown
+  bool skipped = false;  ///< not shown, though in view: the budget did not suffice
+};
+
+/// What the choice of levels of a frame came to (regulator/lod/solver.h).
+struct LodPlan {
+  double benefit = 0, upper_bound = 0;
+  double cost_ms = 0;  ///< the sum of its layers and shadow maps, each alone
+  bool fits = true;    ///< false: the cheapest choices alone exceed the budget
+  int iterations = 0;  ///< of the solver
+  int skipped = 0;     ///< layers in view that are not shown
 };
 
 struct MapAssessment;
+class LodSolver;  // regulator/lod/solver.h
 
 struct FramePlan {
   int frame = 0;
   std::vector<LayerDecision> decisions;  ///< by layer id
   std::vector<LayerDecision> maps;       ///< of the shadow maps, in the order of their assessments
+  std::optional<LodPlan> lod;            ///< of LodSelector::Optimise
 };
 
 /// Hold and Interpolate draw on the beat: pictures, order and fades are those of the last beat, and what was out
@@ -240,9 +269,14 @@ FrameBeat regular_beat(int frame, const RegulatorOptions& options);
 
 FramePlan regulate(int frame, std::span<const LayerAssessment> assessments, const RegulatorOptions& options);
 /// The same where the last beat was another one, because the run began between two of them.
-/// `maps`: the shadow maps that these layers look up (regulator/shadow_maps.h).
+/// `maps`: the shadow maps that these layers look up (regulator/shadow_maps.h). `solver`: of the run; it makes the choice of
+/// levels faster and never another one.
 FramePlan regulate(const FrameBeat& beat, std::span<const LayerAssessment> assessments,
-                   const RegulatorOptions& options, std::span<const MapAssessment> maps = {});
+                   const RegulatorOptions& options, std::span<const MapAssessment> maps = {},
+                   LodSolver* solver = nullptr);
+
+/// Are levels of detail chosen: is that asked for, and does the policy know how?
+bool chooses_levels(const RegulatorOptions& options);
 
 /// Do the options ask for the colour warp or a threshold of the light, whatever the policy?
 bool asks_for_light(const RegulatorOptions& options);

@@ -10,6 +10,7 @@
 #include "sequences/commands/culling/accuracy_culling.h"
 #include "sequences/commands/motion/accuracy_amortised.h"
 #include "sequences/commands/motion/accuracy_latency.h"
+#include "sequences/commands/motion/accuracy_lod.h"
 #include "sequences/commands/motion/accuracy_predictive.h"
 #include "sequences/commands/words.h"
 #include "sequences/experiments/warps/solver_report.h"
@@ -42,6 +43,7 @@ constexpr SequenceExperiment kSequenceExperiments[] = {
     {"--predictive", &AccuracyOptions::predictive, run_predictive_accuracy},
     {"--amortised", &AccuracyOptions::amortised, run_amortised_accuracy},
     {"--latency", &AccuracyOptions::latency, run_latency_accuracy},
+    {"--lod", &AccuracyOptions::lod, run_lod_accuracy},
     {"--culling", &AccuracyOptions::culling, run_culling_accuracy},
     {"--visibility", &AccuracyOptions::visibility, run_visibility_accuracy},
     {"--memory", &AccuracyOptions::memory, run_memory_accuracy},

@@ -9,6 +9,7 @@
 ///   --factoring SEQUENCE   of shading in sprites of its own; accuracy_factoring.h
 ///   --predictive SEQUENCE  of buffers that parts share by their motion; motion/accuracy_predictive.h
 ///   --amortised SEQUENCE   of layers that share sprites while it runs; motion/accuracy_amortised.h
+///   --lod SEQUENCE         of levels of detail; motion/accuracy_lod.h
 ///   --latency SEQUENCE     nothing: error over the age of the camera's pose; motion/accuracy_latency.h
 ///   --culling SEQUENCE     nothing: which structure finds what is in view; culling/accuracy_culling.h
 ///   --visibility SEQUENCE  of what is not drawn because nobody sees it: nothing; likewise
@@ -26,7 +27,8 @@ struct AccuracyOptions {
   bool solvers = false;  ///< exactly one of the experiments must be asked for
   bool hard = false;     ///< likewise
   // A sequence each; empty: not asked for.
-  std::string regulator, renderer, factoring, predictive, amortised, latency, culling, visibility, memory;
+  std::string regulator, renderer, factoring, predictive, amortised, latency, lod, culling, visibility,
+      memory;
   ExperimentOptions of_sequence;  ///< all but its sequence
   std::string out = "out/accuracy";
   std::string progress = "auto";  ///< auto, bar, plain or none

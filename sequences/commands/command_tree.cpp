@@ -350,6 +350,9 @@ void add_experiments(CLI::App& command, AccuracyOptions& options) {
       .option("--latency", options.latency,
               "SEQUENCE: how far points are off by the age of the camera's pose, held, linear, kalman; and "
               "what a last warp saves")
+      .option(
+          "--lod", options.lod,
+          "SEQUENCE: selectors of levels of detail: how even the times of frames are, against the picture")
       .option("--culling", options.culling,
               "SEQUENCE: trees, octrees and a flat scan that find what is in view: time, nodes, tests")
       .option("--visibility", options.visibility,

@@ -49,13 +49,14 @@ std::vector<Group> groups_of(const CommandLine& line, bool is_late) {
                                {{Interpolate, Threshold, Lookahead, Oracle}, {}},
                                {{Predictive}, {}},
                                {{Lookahead, Predictive}, {}},
-                               {{Threshold}, {}}};
+                               {{Threshold}, {}},
+                               {{Reference, Threshold, Budget}, {}},
+                               {{Budget}, {}}};
   Given(groups[0].given)("--hold", line.hold);
   Given(groups[1].given)("--lookahead", line.lookahead);
   Given(groups[2].given)("--budget-polygons", line.budget_polygons)("--budget-pixels", line.budget_pixels)(
-      "--budget-chunks", line.budget_chunks)("--budget-ms", line.budget_ms)(
-      "--min-resolution", line.min_resolution)("--cutoff-px", line.cutoff_px)("--choice", line.choice)(
-      "--depth-complexity", line.depth_complexity);
+      "--budget-chunks", line.budget_chunks)("--min-resolution", line.min_resolution)(
+      "--cutoff-px", line.cutoff_px)("--choice", line.choice)("--depth-complexity", line.depth_complexity);
   Given(groups[3].given)("--geometric-px", line.geometric_px);
   Given(groups[4].given)("--shadow-map-px", line.shadow_map_px);
   Given(groups[5].given)("--photometric", line.photometric)("--light-angle-deg", line.light_angle_deg)(
@@ -68,6 +69,12 @@ std::vector<Group> groups_of(const CommandLine& line, bool is_late) {
   Given(groups[10].given)("--regroup", line.regroup)("--regroup-prices", line.regroup_prices)(
       "--regroup-ceiling-ms", line.regroup_ceiling_ms)("--regroup-dwell", line.regroup_dwell)("--refresh",
                                                                                               line.refresh);
+  Given(groups[11].given)("--lod", line.lod)("--px-per-polygon", line.px_per_polygon)("--feedback-gain",
+                                                                                      line.feedback_gain);
+  Given(groups[12].given)("--benefit", line.lod_benefit)("--first-appearance", line.first_appearance);
+  // Feedback has a target.
+  const bool has_target = line.lod == regulator::name(regulator::LodSelector::Feedback);
+  Given(groups[has_target ? 11 : 2].given)("--budget-ms", line.budget_ms);
   return groups;
 }
 

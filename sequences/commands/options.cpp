@@ -125,6 +125,35 @@ void apply_regrouping(const CommandLine& line, regulator::RegroupOptions& option
   if (line.regroup_dwell) options.dwell_frames = *line.regroup_dwell;
 }
 
+/// A budget of time chooses levels by policy budget: where no policy is named, that is meant.
+void apply_levels(const CommandLine& line, regulator::RegulatorOptions& options) {
+  regulator::LodOptions& lod = options.lod;
+  if (!line.lod.empty()) lod.by = choice("--lod", line.lod, kLodWords);
+  if (!line.lod.empty() && line.policy.empty() && lod.by == regulator::LodSelector::Optimise)
+    options.policy = regulator::Policy::Budget;
+  if (!line.lod_benefit.empty()) lod.benefit = choice("--benefit", line.lod_benefit, kLodBenefitWords);
+  if (!line.first_appearance.empty())
+    lod.first_appearance = choice("--first-appearance", line.first_appearance, kFirstAppearanceWords);
+  if (line.px_per_polygon) lod.px_per_polygon = *line.px_per_polygon;
+  if (line.feedback_gain) lod.feedback_gain = *line.feedback_gain;
+}
+
+/// What each selector needs.
+void require_levels(const CommandLine& line, const regulator::RegulatorOptions& options) {
+  using enum regulator::LodSelector;
+  const regulator::LodSelector by = options.lod.by;
+  const std::string is = "--lod is '" + std::string(regulator::name(by)) + "'";
+  if (!line.lod.empty() && by != None && !regulator::chooses_levels(options))
+    throw InputError(is + ", but --policy is '" + std::string(regulator::name(options.policy)) +
+                     "', must be " + (by == Optimise ? "budget" : "reference, threshold or budget"));
+  if (!regulator::chooses_levels(options) || (by != Optimise && by != Feedback)) return;
+  if (options.budget.ms == regulator::kNoLimitMs) throw InputError(is + ", must come with --budget-ms");
+  if (by == Optimise &&
+      (options.budget.polygons != regulator::kNoLimit || options.budget.pixels != regulator::kNoLimit ||
+       options.budget.chunks != regulator::kNoLimit))
+    throw InputError(is + ", must have a budget of --budget-ms alone");
+}
+
 /// What holds only of all options together.
 void require_consistent(const CommandLine& line, const regulator::RegulatorOptions& options) {
   if (options.policy == regulator::Policy::Budget && !regulator::is_limited(options))
@@ -135,6 +164,7 @@ void require_consistent(const CommandLine& line, const regulator::RegulatorOptio
     throw InputError("--budget-gap compares choices within a budget, but --policy is '" +
                      std::string(regulator::name(options.policy)) + "', must be budget");
   if (const std::string defect = regulator::first_defect(options); !defect.empty()) throw InputError(defect);
+  require_levels(line, options);
   if (const std::string foreign = of_another_policy(line, options.policy, options.latency.render_ms > 0);
       !foreign.empty())
     throw InputError(foreign);
@@ -156,6 +186,7 @@ void apply_regulator(const CommandLine& line, regulator::RegulatorOptions& optio
   if (!line.adaptive.empty()) options.predictive.adaptive = choice("--adaptive", line.adaptive, kSwitchWords);
   apply_regrouping(line, options.regroup);
   if (!line.refresh.empty()) options.refresh = choice("--refresh", line.refresh, kRefreshWords);
+  apply_levels(line, options);
   apply_limits(line, options);
   apply_latency(line.latency_ms, options.latency);
   apply_prediction(line, options);
@@ -334,6 +365,7 @@ ContentOptions content_options(const ContentWords& words) {
 ContentOptions content_options(const CommandLine& line) {
   ContentOptions options = content_options(line.content);
   options.geometric_px = line.geometric_px;
+  if (!line.lod.empty()) options.levels = line.lod != regulator::name(regulator::LodSelector::None);
   if (!line.size.empty()) options.display_px = display_from(line.size);
   return options;
 }

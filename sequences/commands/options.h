@@ -40,6 +40,8 @@ struct CommandLine {
   std::string regroup, regroup_prices, refresh;
   std::optional<double> regroup_ceiling_ms;
   std::optional<int> regroup_dwell;
+  std::string lod, lod_benefit, first_appearance;
+  std::optional<double> px_per_polygon, feedback_gain;
   std::optional<int> tree_k, samples, accumulate;
   std::optional<int> hold, blend, lookahead, material_points;
   std::optional<int> compression;  ///< quality; 0: none, whatever the sequence says

@@ -102,6 +102,27 @@ void add_regrouping(CLI::App& command, CommandLine& line) {
               std::string(word_of(kUsual.refresh, kRefreshWords)));
 }
 
+void add_levels(CLI::App& command, CommandLine& line) {
+  const regulator::LodOptions& usual = kUsual.lod;
+  OptionGroup(command, "Levels of detail (policies reference, threshold and budget)")
+      .option("--lod", line.lod,
+              alternatives(kLodWords) +
+                  ": finest, by size, by size as the last frame's time asks, what gives most within "
+                  "--budget-ms (policy budget)",
+              std::string(word_of(usual.by, kLodWords)))
+      .option("--benefit", line.lod_benefit,
+              "--lod optimise: what a picture is worth: " + alternatives(kLodBenefitWords),
+              std::string(word_of(usual.benefit, kLodBenefitWords)))
+      .option("--first-appearance", line.first_appearance,
+              "--lod optimise: what comes into view: " + alternatives(kFirstAppearanceWords),
+              std::string(word_of(usual.first_appearance, kFirstAppearanceWords)))
+      .option("--px-per-polygon", line.px_per_polygon,
+              "--lod static: pixels for each triangle; feedback begins with it", shown(usual.px_per_polygon))
+      .option("--feedback-gain", line.feedback_gain,
+              "--lod feedback: by how much that grows after a frame twice as long as --budget-ms",
+              shown(usual.feedback_gain));
+}
+
 void add_thresholds(CLI::App& command, CommandLine& line) {
   const regulator::Thresholds& usual = kUsual.thresholds;
   OptionGroup(command, "Thresholds")
@@ -209,6 +230,7 @@ void add_decisions(CLI::App& command, CommandLine& line) {
   add_policy(command, line);
   add_thresholds(command, line);
   add_regrouping(command, line);
+  add_levels(command, line);
   add_budget(command, line);
   add_layers(command, line);
 }

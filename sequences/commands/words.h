@@ -36,6 +36,19 @@ struct Word {
 template <typename T, std::size_t N>
 using Words = std::array<Word<T>, N>;
 
+inline constexpr Words<regulator::LodSelector, 4> kLodWords{{{"none", regulator::LodSelector::None},
+                                                             {"static", regulator::LodSelector::Static},
+                                                             {"feedback", regulator::LodSelector::Feedback},
+                                                             {"optimise", regulator::LodSelector::Optimise}}};
+
+inline constexpr Words<regulator::LodBenefit, 2> kLodBenefitWords{
+    {{"printed", regulator::LodBenefit::Printed}, {"error", regulator::LodBenefit::Error}}};
+
+inline constexpr Words<regulator::FirstAppearance, 3> kFirstAppearanceWords{
+    {{"draw", regulator::FirstAppearance::Draw},
+     {"coarsest", regulator::FirstAppearance::Coarsest},
+     {"skip", regulator::FirstAppearance::Skip}}};
+
 inline constexpr Words<bool, 2> kSwitchWords{{{"on", true}, {"off", false}}};
 
 inline constexpr Words<ProgressKind, 4> kProgressWords{{{"auto", ProgressKind::Auto},

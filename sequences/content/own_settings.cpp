@@ -19,6 +19,7 @@ Settings own_settings(const Sequence& sequence) {
   settings.compression = sequence.compression;
   settings.visibility = sequence.visibility;
   settings.cells = sequence.cells;
+  settings.levels = sequence.levels;
   settings.fps = sequence.fps;
   settings.frames = sequence.frames;
   return settings;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/content/regulator_keys.h"
 
+#include "regulator/lod/selectors.h"
 #include "sequences/content/sequence.h"
 
+#include <array>
 #include <limits>
 
 namespace talisman::sequences {
@@ -12,6 +14,7 @@ namespace {
 using layers::KalmanNoise;
 using regulator::BudgetOptions;
 using regulator::LatencyOptions;
+using regulator::LodOptions;
 using regulator::LookaheadOptions;
 using regulator::PredictiveOptions;
 using regulator::RegroupOptions;
@@ -155,6 +158,34 @@ Table<RegroupOptions> regroup_keys() {
            "weight of the last life of a sprite in how long the next is expected to last");
 }
 
+template <typename T, std::size_t N>
+Format<T> one_of(const std::array<T, N>& all) {
+  std::vector<std::pair<std::string, T>> choices;
+  for (const T one : all) choices.emplace_back(regulator::name(one), one);
+  return choice(choices);
+}
+
+Table<LodOptions> lod_keys() {
+  using L = LodOptions;
+  return Table<L>()
+      .key(
+          "lod", &L::by, one_of(regulator::kAllLodSelectors), "",
+          "policies reference, threshold and budget: at which level of detail layers are drawn: the finest; "
+          "the finest "
+          "whose triangles are large enough; likewise, as large as the last frame's time asks for; of policy "
+          "budget, what gives most within budget_ms")
+      .key("lod_benefit", &L::benefit, one_of(regulator::kAllLodBenefits), "",
+           "lod optimise: what a picture is worth: six guesses of [Fu93], or the error that it takes away")
+      .key("first_appearance", &L::first_appearance, one_of(regulator::kAllFirstAppearances), "",
+           "lod optimise: what comes into view is drawn finest, coarsest where the budget affords no more, "
+           "or not at "
+           "all where it does not")
+      .key("px_per_polygon", &L::px_per_polygon, number({0, regulator::kMostPxPerPolygon}), "px",
+           "lod static: pixels for each triangle of the level; feedback begins with it")
+      .key("feedback_gain", &L::feedback_gain, number({kLeast, regulator::kMostPxPerPolygon}), "px",
+           "lod feedback: by how much that grows after a frame twice as long as budget_ms");
+}
+
 Table<BudgetOptions> budget_keys() {
   using B = BudgetOptions;
   return Table<B>()
@@ -241,6 +272,7 @@ const Table<RegulatorOptions>& regulator_keys() {
           .key("refresh", &R::refresh, refresh_of(), "",
                "policy threshold: where a sprite is too far off in places only, all of it is drawn again "
                "(sprite), or the chunks that show them (chunks)")
+          .include(&R::lod, lod_keys())
           .include(&R::latency, latency_keys())
           .include(&R::kalman, kalman_keys())
           .rule("latency_warp_ms at most latency_ms", [](const R& r) {

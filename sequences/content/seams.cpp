@@ -9,6 +9,8 @@
 
 #include "layers/check.h"
 #include "layers/glob.h"
+#include "layers/lod/levels.h"
+#include "sequences/content/levels.h"
 
 namespace talisman::sequences {
 
@@ -57,11 +59,14 @@ Sequence with_seams_for(Sequence sequence, const Settings& settings) {
   if (sequence.content.seam.value_or(sequence.seam) != Seam::Auto) return sequence;
   sequence.content.geometric_px = settings.regulator.thresholds.geometric_px;
   sequence.content.display_px = settings.view.display_px;
-  layers::Scene scene = *sequence.scene;
+  const bool has_levels = sequence.levels != nullptr;
+  layers::Scene scene =
+      has_levels ? layers::without_levels(*sequence.scene, *sequence.levels) : *sequence.scene;
   remove_seams(scene, sequence.layer_specs);
   add_seams(scene, seam_options(sequence), sequence.layer_specs);
   sequence.layers = layers::factor(scene, sequence.layer_specs);
   sequence.scene = std::make_shared<const layers::Scene>(std::move(scene));
+  if (has_levels) add_levels(sequence);
   return sequence;
 }
 

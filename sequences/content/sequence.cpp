@@ -10,6 +10,7 @@
 #include "sequences/content/factoring/cuts.h"
 #include "sequences/content/factoring/factoring.h"
 #include "sequences/content/images/place_images.h"
+#include "sequences/content/levels.h"
 #include "sequences/content/nearest_word.h"
 #include "sequences/content/own_settings.h"
 #include "sequences/content/scene_builder.h"
@@ -79,6 +80,8 @@ void finish(Sequence& sequence, BuiltScene built, std::vector<layers::LayerSpec>
                                                    : " parts are taken by no layer and are not drawn: ") +
                                 quoted(parts));
   sequence.scene = std::make_shared<const layers::Scene>(std::move(built.scene));
+  if (sequence.content.levels.value_or(sequence.regulator.lod.by != regulator::LodSelector::None))
+    add_levels(sequence);
   if (!built.cells.cells.empty())
     sequence.cells = std::make_shared<const layers::CellSet>(std::move(built.cells));
 }

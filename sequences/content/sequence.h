@@ -20,7 +20,8 @@
 #include "sequences/pipeline/frame_order.h"
 
 namespace talisman::layers {
-struct CellSet;  // layers/cells.h
+struct CellSet;   // layers/cells.h
+struct LevelSet;  // layers/lod/levels.h
 }  // namespace talisman::layers
 
 namespace talisman::sequences {
@@ -42,6 +43,7 @@ struct ContentOptions {
   std::optional<double> turntable_s = {};  ///< > 0; one turn of the orbiting camera
   bool stage = true;                       ///< bare models stand on a ground, before a backdrop
   std::optional<Seam> seam = {};
+  std::optional<bool> levels = {};  ///< parts get levels of detail
   /// Of the run, where it is not the file's: how far seams reach depends on both.
   std::optional<double> geometric_px = {};
   std::optional<layers::ivec2> display_px = {};
@@ -71,13 +73,14 @@ struct Sequence {
   layers::PlacementOptions placement;
   std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are
   std::optional<double> clip_margin;                       ///< View::clip_margin where the file sets it
-  regulator::RegulatorOptions regulator;         ///< defaults of the sequence; the command line overrides
-  std::string warp = "aff";                      ///< curve name
-  VisibilityOptions visibility;                  ///< which tests decide what is drawn at all
-  std::shared_ptr<const layers::CellSet> cells;  ///< null: none
-  std::vector<std::string> warnings;             ///< missing textures and the like, one line each
-  std::vector<std::string> notes;                ///< what was decided where the model leaves it open
-  ContentOptions content;                        ///< with which it was read
+  regulator::RegulatorOptions regulator;           ///< defaults of the sequence; the command line overrides
+  std::string warp = "aff";                        ///< curve name
+  VisibilityOptions visibility;                    ///< which tests decide what is drawn at all
+  std::shared_ptr<const layers::CellSet> cells;    ///< null: none
+  std::shared_ptr<const layers::LevelSet> levels;  ///< of `scene`, which has their parts; null: not asked for
+  std::vector<std::string> warnings;               ///< missing textures and the like, one line each
+  std::vector<std::string> notes;                  ///< what was decided where the model leaves it open
+  ContentOptions content;                          ///< with which it was read
 };
 
 /// Reads a sequence by name ("canyon", also "canyon/background" for a variant file

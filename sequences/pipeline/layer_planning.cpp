@@ -77,16 +77,6 @@ double expected_reuse_frames(const Pipeline& pipeline, const LayerMemory& memory
   return std::min(by_policy, 2.0 * std::abs(frame - memory.frame_rendered));
 }
 
-/// Where the layer's sprite lies if it is rendered at the instant of `frame`, at a regulated resolution.
-SpritePlacement place_regulated(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
-                                double resolution) {
-  const LayerState& now = captured_states(pipeline, state, frame)[layer];
-  const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
-  if (!(expected_reuse > 0)) return place_layer(pipeline, state.layers, now, now, 0, resolution);
-  return place_layer(pipeline, state.layers, now, captured_motion(pipeline, state, layer, frame + 1),
-                     expected_reuse, resolution);
-}
-
 /// Sampling is judged by the texels that the layer's author asks for, not by the coarser ones of a sprite
 /// whose resolution was lowered.
 void see_through_resolution(LayerAssessment& assessment, double resolution) {
@@ -229,11 +219,20 @@ const LayerState& captured_motion(const Pipeline& pipeline, PipelineState& state
   return layer_state;
 }
 
+SpritePlacement placement_at_resolution(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
+                                        double resolution) {
+  const LayerState& now = captured_states(pipeline, state, frame)[layer];
+  const double expected_reuse = expected_reuse_frames(pipeline, state.memory[layer], frame);
+  if (!(expected_reuse > 0)) return place_layer(pipeline, state.layers, now, now, 0, resolution);
+  return place_layer(pipeline, state.layers, now, captured_motion(pipeline, state, layer, frame + 1),
+                     expected_reuse, resolution);
+}
+
 const SpritePlacement& captured_placement(const Pipeline& pipeline, PipelineState& state, int layer,
                                           int frame) {
   captured_states(pipeline, state, frame);
   std::optional<SpritePlacement>& known = state.captured.at(frame).placements[layer];
-  if (!known) known = place_regulated(pipeline, state, layer, frame, 1);
+  if (!known) known = placement_at_resolution(pipeline, state, layer, frame, 1);
   return *known;
 }
 
@@ -248,7 +247,7 @@ void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,
     layer.resolution = all[i].resolution;
     if (!layer.in_view || layer.resolution == 1) continue;
     std::optional<SpritePlacement>& placement = state.captured.at(frame).placements[layer.layer];
-    placement = place_regulated(pipeline, state, layer.layer, frame, layer.resolution);
+    placement = placement_at_resolution(pipeline, state, layer.layer, frame, layer.resolution);
     layer.cost = cost_of(pipeline, state.layers, layer.layer, *placement);
   }
   for (std::size_t k = 0; k < maps.size(); ++k)

@@ -44,6 +44,10 @@ const layers::LayerState& captured_motion(const Pipeline& pipeline, PipelineStat
 const layers::SpritePlacement& captured_placement(const Pipeline& pipeline, PipelineState& state, int layer,
                                                   int frame);
 
+/// The same at a resolution, relative to what the layer's author asks for; not kept.
+layers::SpritePlacement placement_at_resolution(const Pipeline& pipeline, PipelineState& state, int layer,
+                                                int frame, double resolution);
+
 /// Step 6 of [LS97 6], policy Budget: chooses the resolution of every layer in view and of the shadow maps, and
 /// computes placement and cost again where it is not 1. `options`: the budget of this frame.
 void fit_resolutions(const Pipeline& pipeline, PipelineState& state, int frame,

@@ -29,6 +29,7 @@
 
 namespace talisman::layers {
 struct CellSet;     // layers/cells.h
+struct LevelSet;    // layers/lod/levels.h
 class SceneMotion;  // layers/advance.h
 }  // namespace talisman::layers
 
@@ -66,7 +67,8 @@ struct Settings {
   /// M ≥ 1: a frame is the mean of M pictures over its time (sequences/pipeline/accumulate.h). 1: an instant. More
   /// are smoother motion blur, and cost what changes within a frame each time.
   int accumulate = 1;
-  std::shared_ptr<const layers::CellSet> cells;  ///< of the scene; null: it has none
+  std::shared_ptr<const layers::CellSet> cells;    ///< of the scene; null: it has none
+  std::shared_ptr<const layers::LevelSet> levels;  ///< of the scene's parts; null: there is nothing coarser
 };
 
 class Culling;  // sequences/pipeline/culling/culling.h
@@ -108,6 +110,7 @@ struct LayerMemory {
   double resolution = 1;               ///< of the sprite, relative to what the layer's author asks for
   bool predicted = false;  ///< `then` was extrapolated in frame_rendered, it is not the scene's own motion
   int frames_short_of_area = 0;  ///< frames in a row in which it was deferred for want of pixels or chunks
+  int level = 0;                 ///< of detail, of the sprite
   RestMemory rest;
   regulator::RefreshLedger ledger{};                ///< of its chunks drawn alone
   std::optional<regulator::SpriteChunks> chunks{};  ///< empty unless chunks of it were judged or drawn alone
@@ -179,7 +182,9 @@ struct PipelineState {
   std::optional<MotionKnown> motion;      ///< what predictions are made from; empty unless they are made
   std::optional<regulator::RegulatorOptions> planned_with;  ///< `captured` was judged under these options
   std::shared_ptr<PredictiveMemory>
-      predictive;  ///< words and buffers of policy Predictive; null for all others
+      predictive;                         ///< words and buffers of policy Predictive; null for all others
+  std::optional<double> px_per_polygon;   ///< of LodSelector::Feedback, for the next frame
+  Unshared<regulator::LodSolver> solver;  ///< of LodSelector::Optimise
 };
 
 }  // namespace talisman::sequences

@@ -21,6 +21,7 @@
 #include "sequences/pipeline/latency/late_camera.h"
 #include "sequences/pipeline/layer_planning.h"
 #include "sequences/pipeline/light_beside.h"
+#include "sequences/pipeline/lod/levels_now.h"
 #include "sequences/pipeline/predictive/plan_buffers.h"
 #include "sequences/pipeline/refresh/refresh.h"
 #include "sequences/pipeline/regrouping/regroup.h"
@@ -143,6 +144,7 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
                               ? decide_instant(pipeline, state, report.frame, decision, *report.lookahead)
                               : report.frame;
       begin_fade(pipeline, state, decision.layer, report.frame);
+      place_at_level(pipeline, state, instant, decision);
       // The placement first: it depends on how long the old sprite lasted.
       memory.placement = captured_placement(pipeline, state, decision.layer, instant);
       memory.then = captured_states(pipeline, state, instant)[decision.layer];
@@ -153,9 +155,11 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
       memory.chunks.reset();
       memory.ledger = regulator::after_whole(memory.ledger, report.frame);
       memory.resolution = decision.resolution;
+      memory.level = decision.level;
       memory.predicted = predicts(pipeline);
       memory.frames_short_of_area = 0;
       decision.cost = cost_of(pipeline, state.layers, decision.layer, memory.placement);
+      lower_cost(pipeline, state, decision.layer, memory.level, decision.cost);
       look_up_shadow_maps(pipeline, state, maps, decision.layer, instant, report);
     }
     if (decision.action == Action::Refresh)
@@ -236,8 +240,8 @@ chunker::RenderResult draw_remembered(const Pipeline& pipeline, PipelineState& s
   for (const ShadowMapInstant& map : memory.maps)
     held.push_back({map.light, &instants.at(map.known, map.depicts_frame), map.resolution});
   const auto draw = draws_chunks_late(pipeline) ? &draw_layer_late : &draw_layer;
-  return draw({pipeline, state.layers, state.shadow_maps, prepared, frame, held}, state.layers[layer],
-              memory.placement);
+  const Layer drawn = drawn_layer(pipeline, state.layers[layer], memory.level);
+  return draw({pipeline, state.layers, state.shadow_maps, prepared, frame, held}, drawn, memory.placement);
 }
 
 /// Draws the chunks that are of other instants than the whole, and that the sprite does not hold yet.
@@ -442,10 +446,11 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   }
   const regulator::RegulatorOptions options = options_now(pipeline, state);
   ShadowMapsNow maps = assess_shadow_maps(pipeline, state, report);
-  if (options.policy == regulator::Policy::Budget)
+  if (options.policy == regulator::Policy::Budget && solver_of(state, options) == nullptr)
     fit_resolutions(pipeline, state, frame, options, report.assessments, maps.maps);
+  assess_levels(pipeline, state, frame, options, report.assessments);
   report.plan = regulator::regulate({frame, state.beat ? state.beat->frame : frame}, report.assessments,
-                                    options, maps.maps);
+                                    options, maps.maps, solver_of(state, options));
   report.shadow_maps = shadow_map_rows(pipeline, maps, report.plan.maps);
   report.depth_complexity = options.budget.depth_complexity;
   double bookkeeping_ms = plan_watch.ms();
@@ -458,6 +463,7 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   else
     remember_renders(pipeline, state, maps, report);
   if (regulator::regroups(options)) regroup(pipeline, state, report);
+  note_drawing_time(pipeline, state, report);
   const Fades fades = carry_fades(pipeline, state, report);
   explain_order(report);
   explain_culling(pipeline, state, report);
@@ -485,6 +491,7 @@ chunker::Frame draw_reference(const Pipeline& pipeline, int frame, const chunker
   Pipeline reference = pipeline;
   reference.settings.regulator.policy = regulator::Policy::Reference;
   reference.culling = nullptr;
+  reference.settings.regulator.lod.by = regulator::LodSelector::None;
   PipelineState fresh(reference);
   return step(reference, fresh, frame, &prepared).picture;
 }

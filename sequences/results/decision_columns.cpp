@@ -153,6 +153,19 @@ DecisionColumns late_columns() {
       })};
 }
 
+/// Absent where levels are not chosen.
+DecisionColumns level_columns() {
+  return {
+      computed<Row>("level", "level", "",
+                    "with --lod: level of detail of the sprite shown, 0 is the finest; absent out of view",
+                    [](const Row& r) {
+                      return assessment(r).levels.empty() ? Value(Absent{}) : value_of(r.decision.level);
+                    }),
+      computed<Row>("skipped", "skipped", "",
+                    "with --lod: true where the layer is in view and not shown: the budget did not suffice",
+                    [](const Row& r) { return r.decision.skipped ? value_of(true) : Value(Absent{}); })};
+}
+
 DecisionColumns geometric_columns() {
   return {
       computed<Row>(
@@ -308,8 +321,9 @@ const ColumnTable<DecisionRow>& decision_table() {
   static const ColumnTable<DecisionRow> table = [] {
     ColumnTable<DecisionRow> t{"decisions", "talisman.decision/1", {}, {}};
     for (const DecisionColumns& part :
-         {what_was_done(), warp_columns(), placement_columns(), what_is_shown(), late_columns(),
-          geometric_columns(), photometric_columns(), remaining_fiducials(), chunk_columns(), cost_columns()})
+         {what_was_done(), warp_columns(), placement_columns(), what_is_shown(), level_columns(),
+          late_columns(), geometric_columns(), photometric_columns(), remaining_fiducials(), chunk_columns(),
+          cost_columns()})
       t.columns.insert(t.columns.end(), part.begin(), part.end());
     t.groups = {{"sprite", "of layers whose sprite is shown", true,
                  [](const DecisionRow& r) { return r.placement != nullptr; }},

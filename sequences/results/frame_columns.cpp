@@ -190,6 +190,25 @@ FrameColumns frame_budget_gap() {
               [](auto& l) -> auto& { return l.budget_gap->exact; })};
 }
 
+FrameColumns frame_levels() {
+  return {stored<FrameLine>(
+              "lod_benefit", "lod/benefit", "", "of what was chosen; with --benefit error in pixels",
+              [](auto& l) -> auto& { return l.lod->benefit; }),
+          stored<FrameLine>(
+              "lod_upper_bound", "lod/upper_bound", "", "no choice within the budget has more benefit",
+              [](auto& l) -> auto& { return l.lod->upper_bound; }),
+          stored<FrameLine>(
+              "lod_cost_ms", "lod/cost_ms", "ms", "modelled time of what was chosen, each layer alone",
+              [](auto& l) -> auto& { return l.lod->cost_ms; }),
+          stored<FrameLine>(
+              "lod_fits", "lod/fits", "",
+              "false: the coarsest pictures of what comes into view exceed the budget",
+              [](auto& l) -> auto& { return l.lod->fits; }),
+          stored<FrameLine>(
+              "lod_skipped", "lod/skipped", "layers", "in view and not shown",
+              [](auto& l) -> auto& { return l.lod->skipped; })};
+}
+
 FrameColumns written_pictures() {
   return {stored<FrameLine>(
       "picture_hash", "written/picture_hash", "",
@@ -373,6 +392,8 @@ std::vector<ColumnGroup<FrameLine>> frame_groups() {
        [](FrameLine& l) { l.latency.emplace(); }},
       {"budget_gap", "with --budget-gap", false, [](const FrameLine& l) { return l.budget_gap.has_value(); },
        [](FrameLine& l) { l.budget_gap.emplace(); }},
+      {"lod", "with --lod optimise", false, [](const FrameLine& l) { return l.lod.has_value(); },
+       [](FrameLine& l) { l.lod.emplace(); }},
       {"quality", "with --quality", false, [](const FrameLine& l) { return l.quality.has_value(); },
        make_quality}};
 }
@@ -386,7 +407,8 @@ const ColumnTable<FrameLine>& frame_table() {
          {counters(), frame_work(), drawing(),
           compression_columns<FrameLine>([](auto& l) -> auto& { return *l.compression; }), frame_visibility(),
           written_pictures(), light_layers(), moving_pictures(), seams(), frame_expressions(),
-          frame_budget_gap(), frame_lookahead(), frame_predictive(), frame_refresh(), frame_latency(),
+          frame_budget_gap(), frame_levels(), frame_lookahead(), frame_predictive(), frame_refresh(),
+          frame_latency(),
           quality(
               "total", "displayed against `direct`", [](auto& l) -> auto& { return l.quality->total; }),
           quality(

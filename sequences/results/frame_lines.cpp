@@ -8,6 +8,7 @@
 
 #include "regulator/profile.h"
 #include "sequences/files/content_hash.h"
+#include "sequences/pipeline/lod/levels_now.h"
 #include "sequences/results/column_json.h"
 #include "sequences/results/column_tables.h"
 
@@ -62,17 +63,12 @@ FrameLine line_of(const FrameReport& report) {
     line.layers_in_view += d.action != regulator::Action::Drop;
   }
   line.error = error_of(report);
-  const double sprite_pixels = static_cast<double>(line.pixels.rendered - report.blended_pixels);
   line.passes = {report.shade.shadow_maps_drawn, report.shade.shadow_maps_reused,
                  report.shade.reflections_drawn};
   line.polygons.rendered += report.shade.shadow_polygons;
   line.pixels.rendered += report.shade.shadow_pixels;
   line.depth_complexity = report.depth_complexity;
-  line.modelled_drawing_ms = regulator::modelled_time(regulator::talisman_1996(), line.polygons.rendered,
-                                                      std::llround(sprite_pixels * line.depth_complexity) +
-                                                          report.shade.shadow_pixels + report.blended_pixels,
-                                                      0)
-                                 .render_ms;
+  line.modelled_drawing_ms = planned_drawing_ms(report);
   line.polygons.reference = report.reference.polygons;
   line.pixels.reference = report.reference.pixels;
   line.times.plan_ms = report.times.plan_ms;
@@ -84,6 +80,7 @@ FrameLine line_of(const FrameReport& report) {
     if (shown.beside_base_px)
       line.light_beside_px = std::max(line.light_beside_px.value_or(0), *shown.beside_base_px);
   line.budget_gap = report.budget_gap;
+  line.lod = report.plan.lod;
   line.lookahead = report.lookahead;
   line.refresh = report.refresh;
   line.predictive = report.predictive;

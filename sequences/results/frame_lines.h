@@ -92,6 +92,7 @@ struct FrameLine {
   std::optional<FrameQuality> quality;
   std::optional<std::int64_t> open_seam_pixels;    ///< with quality, where layers share edges
   std::optional<regulator::BudgetGap> budget_gap;  ///< with Settings::budget_gap
+  std::optional<regulator::LodPlan> lod;           ///< with --lod optimise
   std::optional<PredictiveReport> predictive;      ///< of that policy, without what drawing adds
   std::optional<LookaheadReport> lookahead;        ///< of the policies that look ahead
   std::optional<RefreshReport> refresh;            ///< with --refresh chunks

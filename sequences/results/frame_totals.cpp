@@ -95,6 +95,13 @@ void FrameTotals::add(const FrameLine& line) {
   if (line.budget_gap) add_gap(*line.budget_gap, gap_);
   if (line.latency) add_latency(*line.latency, latency_);
   if (line.refresh) add_refresh_of(*line.refresh, refresh_);
+  if (line.lod) {
+    ++lod_.frames;
+    lod_.over += !line.lod->fits;
+    lod_.skipped += line.lod->skipped;
+    lod_.benefit += line.lod->benefit;
+    lod_.upper_bound += line.lod->upper_bound;
+  }
   if (line.upload_bytes) upload_bytes_ = upload_bytes_.value_or(0) + *line.upload_bytes;
   if (line.predictive) surprises_ = surprises_.value_or(0) + line.predictive->surprises;
   if (line.lookahead) {

@@ -46,6 +46,13 @@ struct LatencyTotals {
   double mean(double LatencyReport::*number) const { return frames > 0 ? sum.*number / frames : 0; }
 };
 
+/// Of a run that chooses levels within a budget.
+struct LodTotals {
+  int frames = 0, over = 0;  ///< over: the coarsest pictures alone exceed the budget
+  std::int64_t skipped = 0;  ///< layers in view that were not shown, over all frames
+  double benefit = 0, upper_bound = 0;
+};
+
 class FrameTotals {
  public:
   void add(const FrameLine& line);
@@ -65,6 +72,7 @@ class FrameTotals {
   const LatencyTotals& latency() const { return latency_; }
   /// Layers and chunks of all frames, the largest step. Empty where no chunks are drawn alone.
   const std::optional<RefreshReport>& refresh() const { return refresh_; }
+  const LodTotals& lod() const { return lod_; }
   double slowest_sort_ms() const { return slowest_sort_ms_; }
   /// Empty where no frame was compared.
   std::optional<MeanQuality> quality(Quality FrameQuality::*which) const;
@@ -86,6 +94,7 @@ class FrameTotals {
   std::optional<std::int64_t> surprises_;
   LatencyTotals latency_;
   std::optional<RefreshReport> refresh_;
+  LodTotals lod_;
   double slowest_sort_ms_ = 0;
   MeanQuality of_total_, of_reuse_, of_resampling_;  ///< the sums
 };

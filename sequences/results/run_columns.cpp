@@ -204,6 +204,20 @@ RunColumns run_latency() {
              [](const RunRow& r) { return r.sums.latency().sum.layers_missing; })};
 }
 
+RunColumns run_levels() {
+  return {computed<RunRow>("lod_frames_over", "lod/frames_over", "frames",
+                           "in which the coarsest pictures alone exceed the budget",
+                           [](const RunRow& r) { return r.sums.lod().over; }),
+          computed<RunRow>("lod_skipped", "lod/skipped", "layers", "in view and not shown, over all frames",
+                           [](const RunRow& r) { return r.sums.lod().skipped; }),
+          computed<RunRow>("lod_share_of_bound", "lod/share_of_bound", "",
+                           "benefit of what was chosen over its upper bound, of all frames together",
+                           [](const RunRow& r) {
+                             const LodTotals& lod = r.sums.lod();
+                             return lod.upper_bound > 0 ? lod.benefit / lod.upper_bound : 1.0;
+                           })};
+}
+
 template <typename Which>
 RunColumns run_quality(const std::string& group, const std::string& what, Which) {
   const auto column = [&](const char* name, const char* unit, const std::string& meaning, auto get) {
@@ -228,6 +242,7 @@ std::vector<ColumnGroup<RunRow>> run_groups() {
        [](const RunRow& r) { return r.sums.surprises().has_value(); }},
       {"budget_gap", "with --budget-gap", false, [](const RunRow& r) { return r.gap.frames > 0; }},
       {"latency", "with --latency-ms", false, [](const RunRow& r) { return r.sums.latency().frames > 0; }},
+      {"lod", "with --lod optimise", false, [](const RunRow& r) { return r.sums.lod().frames > 0; }},
       {"quality", "with --quality", false, [](const RunRow& r) { return r.quality.has_value(); }},
       {"quality_of_reuse", "with --quality", false,
        [](const RunRow& r) { return r.quality_of_reuse.has_value(); }},
@@ -251,7 +266,7 @@ const ColumnTable<RunRow>& run_table() {
     ColumnTable<RunRow> t{"run", "talisman.summary/1", {}, run_groups()};
     for (const RunColumns& part :
          {what_was_run(), run_work(), run_visibility(), modelled(), compression(), run_motion_ahead(),
-          run_budget_gap(), run_latency(),
+          run_budget_gap(), run_levels(), run_latency(),
           run_quality(
               "quality", "displayed against `direct`", [](auto& r) -> auto& { return r.quality; }),
           run_quality(

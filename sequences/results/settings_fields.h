@@ -45,7 +45,7 @@ void budget(Budget& b, const Visit& visit) {
 template <typename Options, typename Visit>
 void regulator(Options& options, const Visit& visit) {
   auto& [policy, hold_frames, stagger, blend_frames, color_warp, settle_frames, of_thresholds, lookahead,
-         of_budget, predictive, of_regroup, refresh, latency, kalman] = options;
+         of_budget, predictive, of_regroup, refresh, lod, latency, kalman] = options;
   visit("policy", policy);
   visit("hold_frames", hold_frames);
   visit("stagger", stagger);
@@ -70,6 +70,12 @@ void regulator(Options& options, const Visit& visit) {
   visit("regroup_dwell", dwell);
   visit("regroup_recency", recency);
   visit("refresh", refresh);
+  auto& [lod_by, lod_benefit, first_appearance, px_per_polygon, feedback_gain] = lod;
+  visit("lod", lod_by);
+  visit("lod_benefit", lod_benefit);
+  visit("first_appearance", first_appearance);
+  visit("px_per_polygon", px_per_polygon);
+  visit("feedback_gain", feedback_gain);
   auto& [render_ms, warp_ms, latency_predict] = latency;
   visit("latency_ms", render_ms);
   visit("latency_warp_ms", warp_ms);
@@ -126,8 +132,9 @@ template <typename AnySettings, typename Visit>
 void for_each_setting(AnySettings& settings, const Visit& visit) {
   auto& [regulator, curve, own_warps, fit, view, bound, material_points, extents, placement, render,
          compression, explicit_order, cycles, compositor, fps, frames, budget_gap, late_chunks, visibility,
-         accumulate, cells] = settings;
-  static_cast<void>(cells);  // content: its files are part of the identity
+         accumulate, cells, levels] = settings;
+  static_cast<void>(levels);  // likewise, and of the field lod
+  static_cast<void>(cells);   // content: its files are part of the identity
   auto& [display, clip_margin] = view;
   visit("display_px", display);
   visit("clip_margin", clip_margin);

@@ -24,6 +24,9 @@ Json setting_value(regulator::Policy policy) { return regulator::name(policy); }
 Json setting_value(regulator::Joining joining) { return regulator::name(joining); }
 Json setting_value(regulator::Intervals intervals) { return regulator::name(intervals); }
 Json setting_value(regulator::MotionNorm norm) { return regulator::name(norm); }
+Json setting_value(regulator::LodSelector by) { return regulator::name(by); }
+Json setting_value(regulator::LodBenefit benefit) { return regulator::name(benefit); }
+Json setting_value(regulator::FirstAppearance first) { return regulator::name(first); }
 Json setting_value(regulator::Regroup by) { return regulator::name(by); }
 Json setting_value(regulator::Refresh refresh) { return regulator::name(refresh); }
 Json setting_value(regulator::RegroupPrices prices) { return regulator::name(prices); }

@@ -140,6 +140,12 @@ std::string special_rows(const RunRow& run) {
         "  choice            misses %.2f %% of the best choice's benefit in the mean, %.1f %% at most\n"
         "                    (the best proved in %d of %d frames)\n",
         100 * gap.mean, 100 * gap.max, gap.exact_frames, gap.frames);
+  if (const LodTotals& lod = run.sums.lod(); lod.frames > 0)
+    text += formatted(
+        "  levels of detail  %.2f %% of the upper bound of the benefit; %lld times a layer is skipped\n"
+        "                    in %d of %d frames the coarsest pictures alone exceed the budget\n",
+        lod.upper_bound > 0 ? 100 * lod.benefit / lod.upper_bound : 100.0,
+        static_cast<long long>(lod.skipped), lod.over, lod.frames);
   if (const std::int64_t surprises = run.sums.surprises().value_or(0); surprises > 0)
     text += formatted("  surprises         %lld: the plan was dropped, and the frame drawn whole\n",
                       static_cast<long long>(surprises));

@@ -144,6 +144,7 @@ EXPERIMENTS = {
     "predictive": ["accuracy", "--predictive", "fearing/blocks", *FEW],
     "amortised": ["accuracy", "--amortised", "tour/lookahead", *FEW],
     "latency": ["accuracy", "--latency", "hall", "--size", "160x120"],
+    "lod": ["accuracy", "--lod", "tour/lookahead", *FEW],
     "culling": ["accuracy", "--culling", "hall", "--frames", "0-3", "--size", "160x120"],
     "visibility": ["accuracy", "--visibility", "hall", "--frames", "0-3", "--size", "160x120"],
     "memory": ["accuracy", "--memory", "hall", "--frames", "0-9"],

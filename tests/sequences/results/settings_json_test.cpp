@@ -32,15 +32,16 @@ constexpr int members_of() {
 
 /// Every type that is made of settings, and that the list therefore takes apart.
 constexpr int kSettings =
-    members_of<Settings>() - 7  // regulator, fit, view, extents, placement, render; cells, which are content
+    members_of<Settings>() -
+    8  // regulator, fit, view, extents, placement, render; cells, levels, which are content
     + members_of<regulator::RegulatorOptions>() -
-    7  // thresholds, lookahead, budget, predictive, regroup, latency, kalman
+    8  // thresholds, lookahead, budget, predictive, regroup, lod, latency, kalman
     + members_of<regulator::Thresholds>() + members_of<regulator::LookaheadOptions>() +
     members_of<regulator::BudgetOptions>() + members_of<regulator::PredictiveOptions>() +
-    members_of<regulator::RegroupOptions>() + members_of<regulator::LatencyOptions>() +
-    members_of<layers::KalmanNoise>() + members_of<warp::FitOptions>() + members_of<layers::View>() +
-    members_of<layers::ExtentOptions>() + members_of<layers::PlacementOptions>() +
-    members_of<chunker::RenderOptions>();
+    members_of<regulator::RegroupOptions>() + members_of<regulator::LodOptions>() +
+    members_of<regulator::LatencyOptions>() + members_of<layers::KalmanNoise>() +
+    members_of<warp::FitOptions>() + members_of<layers::View>() + members_of<layers::ExtentOptions>() +
+    members_of<layers::PlacementOptions>() + members_of<chunker::RenderOptions>();
 
 int count(const Settings& settings) {
   int n = 0;
