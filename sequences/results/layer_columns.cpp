@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sequences/results/column_tables.h"
 
+#include <utility>
+#include <vector>
+
 namespace talisman::sequences {
 
 namespace {
@@ -11,7 +14,7 @@ Column<LayerRow> of_layer(std::string name, std::string unit, std::string meanin
   return computed<LayerRow>(std::move(name), path, std::move(unit), std::move(meaning), get);
 }
 
-std::vector<Column<LayerRow>> columns_of_layer() {
+std::vector<Column<LayerRow>> columns_of_renders() {
   return {
       of_layer("name", "", "of the layer; of an aggregate, those of its members",
                [](const LayerRow& r) { return r.layer.name; }),
@@ -40,7 +43,11 @@ std::vector<Column<LayerRow>> columns_of_layer() {
       of_layer("frames_deferred", "frames", "in which it was worth drawing and the budget did not suffice",
                [](const LayerRow& r) { return r.layer.frames_deferred; }),
       of_layer("frames_over_budget", "frames", "of these: it is dearer than the whole budget of a frame",
-               [](const LayerRow& r) { return r.layer.frames_over_budget; }),
+               [](const LayerRow& r) { return r.layer.frames_over_budget; })};
+}
+
+std::vector<Column<LayerRow>> columns_of_what_is_shown() {
+  return {
       of_layer("frames_shown", "frames",
                "in which its sprite is shown; of a shadow map: in which a layer in view looks it up",
                [](const LayerRow& r) { return r.layer.frames_shown; }),
@@ -58,6 +65,12 @@ std::vector<Column<LayerRow>> columns_of_layer() {
                          [](const LayerRow& r) { return r.layer.sprite_px.x; }),
       computed<LayerRow>("sprite_height_px", "sprite_px/1", "px", "likewise",
                          [](const LayerRow& r) { return r.layer.sprite_px.y; })};
+}
+
+std::vector<Column<LayerRow>> columns_of_layer() {
+  std::vector<Column<LayerRow>> columns = columns_of_renders();
+  for (Column<LayerRow>& column : columns_of_what_is_shown()) columns.push_back(std::move(column));
+  return columns;
 }
 
 }  // namespace

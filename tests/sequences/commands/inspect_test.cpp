@@ -48,7 +48,8 @@ TEST_F(Inspect, BadInputIsOneLine) {
                    {"letters.tum:2: has 1 words, rule: t tx ty tz qx qy qz qw"});
   expect_bad_input("inspect --motion letters.tum --format tim",
                    {"--format is 'tim', rule: one of tum, euroc"});
-  expect_bad_input("inspect cube.obj --parts --order", {"--parts, --cells, --order, --factoring and --motion"});
+  expect_bad_input("inspect cube.obj --parts --order",
+                   {"--parts, --cells, --order, --factoring and --motion"});
   expect_bad_input("inspect cube.obj --out a.png", {"--out", "--parts"});
   expect_bad_input("inspect cube.obj --parts --out a.jpg", {"--out is 'a.jpg'", ".png"});
   expect_bad_input("inspect cube.obj --cycles keep", {"--cycles", "--order"});
