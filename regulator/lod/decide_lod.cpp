@@ -81,7 +81,8 @@ LayerWays choices_of(const LayerAssessment& layer, const RegulatorOptions& optio
     result.ways.push_back(way);
     choices.push_back({cost_ms, benefit});
   };
-  if (layer.has_sprite || may_be_skipped(layer, options))
+  const bool can_be_kept = layer.has_sprite && (layer.identical || has_sound_fit(layer));
+  if (can_be_kept || may_be_skipped(layer, options))
     offer(kKeep, 0, as_printed ? kept_as_printed(layer, options) : 0);
   if (layer.has_sprite && has_sound_fit(layer) && barred_by_maximum_rate(layer)) return result;
   const std::vector<LevelChoice> ways = ways_of(layer);
@@ -94,6 +95,7 @@ LayerWays choices_of(const LayerAssessment& layer, const RegulatorOptions& optio
     if (layer.has_sprite && !(error_gain > options.budget.cutoff_px)) continue;
     offer(static_cast<int>(k), drawing_ms(ways[k].cost, options), gain);
   }
+  if (result.ways.empty()) offer(kKeep, 0, 0);
   return result;
 }
 

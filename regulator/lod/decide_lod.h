@@ -9,8 +9,9 @@
 ///   draw      at a level and a resolution (LevelChoice)    t = modelled time on the profile, alone [Fu93 4.2]
 ///   skip      nothing is shown; only first appearances, with `--first-appearance skip`
 ///
-/// since a frame's time is at most the sum of that of its layers, the budget holds. With `coarsest` a first appearance has no
-/// cheaper choice than its cheapest picture; where those of all layers exceed the budget, that is said (LodPlan::fits).
+/// where an old sprite that no warp carries soundly is none: its layer counts as one that appears. Since a frame's time is at
+/// most the sum of that of its layers, the budget holds. With `coarsest` a first appearance has no cheaper choice than its
+/// cheapest picture; where those of all layers exceed the budget, that is said (LodPlan::fits).
 ///
 ///   benefit by error    draw: B + w (e_then - e) + w_s ((1/r_then - 1) - (1/r - 1)), px   B of regulator/budget.h: what the
 ///                       fiducials say; e level errors, r resolutions, then: of the old sprite. First appearances: the

@@ -112,6 +112,18 @@ TEST(DecideLod, WhatRestsIsRefinedWhenThereIsTimeAndThenLeftAlone) {
   EXPECT_EQ(coarse.shown_geometric_px, 4) << "the error of its level is part of what is shown";
 }
 
+/// What no warp carries soundly would be shown in the wrong place: it is drawn as if it appeared.
+TEST(DecideLod, ASpriteWithoutASoundWarpIsDrawnAgainWhateverIsLeft) {
+  LayerAssessment lost = seen(0, 0, 50);
+  lost.matched_points = 0;
+  const FramePlan plan = plan_of({lost}, budget_of(0.1));
+  EXPECT_EQ(plan.decisions[0].action, Action::Rerender);
+  EXPECT_EQ(plan.decisions[0].level, 2);
+  EXPECT_FALSE(plan.lod->fits);
+  for (LevelChoice& way : lost.levels) way.error_px = 1e6;  // the eye is inside of it
+  EXPECT_EQ(plan_of({lost}, budget_of(0.1)).decisions.size(), 1u);
+}
+
 TEST(DecideLod, PrintedBenefitsKeepASpriteThatIsNotOff) {
   RegulatorOptions options = budget_of(0.5);
   options.lod.benefit = LodBenefit::Printed;
