@@ -159,7 +159,7 @@ Table<RegroupOptions> regroup_keys() {
 }
 
 template <typename T, std::size_t N>
-Format<T> one_of(const std::array<T, N>& all) {
+Format<T> one_of_names(const std::array<T, N>& all) {
   std::vector<std::pair<std::string, T>> choices;
   for (const T one : all) choices.emplace_back(regulator::name(one), one);
   return choice(choices);
@@ -169,14 +169,14 @@ Table<LodOptions> lod_keys() {
   using L = LodOptions;
   return Table<L>()
       .key(
-          "lod", &L::by, one_of(regulator::kAllLodSelectors), "",
+          "lod", &L::by, one_of_names(regulator::kAllLodSelectors), "",
           "policies reference, threshold and budget: at which level of detail layers are drawn: the finest; "
           "the finest "
           "whose triangles are large enough; likewise, as large as the last frame's time asks for; of policy "
           "budget, what gives most within budget_ms")
-      .key("lod_benefit", &L::benefit, one_of(regulator::kAllLodBenefits), "",
+      .key("lod_benefit", &L::benefit, one_of_names(regulator::kAllLodBenefits), "",
            "lod optimise: what a picture is worth: six guesses of [Fu93], or the error that it takes away")
-      .key("first_appearance", &L::first_appearance, one_of(regulator::kAllFirstAppearances), "",
+      .key("first_appearance", &L::first_appearance, one_of_names(regulator::kAllFirstAppearances), "",
            "lod optimise: what comes into view is drawn finest, coarsest where the budget affords no more, "
            "or not at "
            "all where it does not")

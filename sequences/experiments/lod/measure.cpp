@@ -83,7 +83,7 @@ LodRun measure_selector(const Sequence& sequence, Settings settings, const LodSe
         setting.target_ms > 0 && measured.ms.back() > setting.target_ms * (1 + 1e-9);
     if (is_judged) run.judge({frame > 0 ? truth.at(frame - 1) : Image8{}, truth.at(frame)});
   }
-  measured.result.modelled = spread_of(measured.ms);
+  measured.result.modelled = frame_spread_of(measured.ms);
   measured.result.measured = run.result();
   return measured;
 }
@@ -102,7 +102,7 @@ std::map<int, Image8> full_detail(const Sequence& sequence, const Settings& sett
 
 }  // namespace
 
-FrameSpread spread_of(const std::vector<double>& ms) {
+FrameSpread frame_spread_of(const std::vector<double>& ms) {
   if (ms.empty()) return {};
   FrameSpread spread{ms[0], 0, ms[0], 0};
   for (const double t : ms) {

@@ -28,7 +28,7 @@ namespace talisman::sequences {
 struct FrameSpread {
   double min = 0, mean = 0, max = 0, sigma = 0;
 };
-FrameSpread spread_of(const std::vector<double>& ms);
+FrameSpread frame_spread_of(const std::vector<double>& ms);
 
 struct LodResult {
   std::string name;

@@ -13,7 +13,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
-RegulatorOptions budget_of(double ms) {
+RegulatorOptions lod_budget(double ms) {
   RegulatorOptions options;
   options.policy = Policy::Budget;
   options.budget.ms = ms;
@@ -55,11 +55,11 @@ FramePlan plan_of(std::vector<LayerAssessment> layers, const RegulatorOptions& o
 }
 
 TEST(DecideLod, WhatAppearsIsAsFineAsTheBudgetAffords) {
-  const auto level_at = [](double ms) { return plan_of({appearing(0)}, budget_of(ms)).decisions[0].level; };
+  const auto level_at = [](double ms) { return plan_of({appearing(0)}, lod_budget(ms)).decisions[0].level; };
   EXPECT_EQ(level_at(1), 0);
   EXPECT_EQ(level_at(0.99), 1);
   EXPECT_EQ(level_at(0.49), 2);
-  const FramePlan plan = plan_of({appearing(0)}, budget_of(0.2));
+  const FramePlan plan = plan_of({appearing(0)}, lod_budget(0.2));
   EXPECT_EQ(plan.decisions[0].level, 2);
   EXPECT_EQ(plan.decisions[0].action, Action::Rerender);
   EXPECT_FALSE(plan.lod->fits);
@@ -68,7 +68,7 @@ TEST(DecideLod, WhatAppearsIsAsFineAsTheBudgetAffords) {
 }
 
 TEST(DecideLod, SkippedLayersAreSaidAndNotShown) {
-  RegulatorOptions options = budget_of(0.3);
+  RegulatorOptions options = lod_budget(0.3);
   options.lod.first_appearance = FirstAppearance::Skip;
   const FramePlan plan = plan_of({appearing(0), appearing(1)}, options);
   EXPECT_EQ(plan.decisions[0].action, Action::Rerender);
@@ -82,7 +82,7 @@ TEST(DecideLod, SkippedLayersAreSaidAndNotShown) {
 }
 
 TEST(DecideLod, DrawTakesTheFinestWhateverItCosts) {
-  RegulatorOptions options = budget_of(0.3);
+  RegulatorOptions options = lod_budget(0.3);
   options.lod.first_appearance = FirstAppearance::Draw;
   const FramePlan plan = plan_of({appearing(0)}, options);
   EXPECT_EQ(plan.decisions[0].level, 0);
@@ -91,7 +91,7 @@ TEST(DecideLod, DrawTakesTheFinestWhateverItCosts) {
 
 /// The warp of one is off by 10 px, the level of the other by 4: there is time for one render at the finest, or two coarser.
 TEST(DecideLod, SpendsWhereTheErrorFallsMost) {
-  const FramePlan plan = plan_of({seen(0, 0, 10), seen(1, 2, 0)}, budget_of(1));
+  const FramePlan plan = plan_of({seen(0, 0, 10), seen(1, 2, 0)}, lod_budget(1));
   // 0: level 1 for 0.5 ms takes 9 px; 1: level 1 for 0.5 ms takes 3 px. Together 12; level 0 of either alone 10 or 4.
   EXPECT_EQ(plan.decisions[0].level, 1);
   EXPECT_EQ(plan.decisions[1].level, 1);
@@ -101,11 +101,11 @@ TEST(DecideLod, SpendsWhereTheErrorFallsMost) {
 }
 
 TEST(DecideLod, WhatRestsIsRefinedWhenThereIsTimeAndThenLeftAlone) {
-  EXPECT_EQ(plan_of({seen(0, 2, 0)}, budget_of(1)).decisions[0].level, 0);
-  const LayerDecision fine = plan_of({seen(0, 0, 0)}, budget_of(1)).decisions[0];
+  EXPECT_EQ(plan_of({seen(0, 2, 0)}, lod_budget(1)).decisions[0].level, 0);
+  const LayerDecision fine = plan_of({seen(0, 0, 0)}, lod_budget(1)).decisions[0];
   EXPECT_EQ(fine.action, Action::Reuse);
   EXPECT_EQ(fine.reason, "unchanged; level 0 of 3");
-  const LayerDecision coarse = plan_of({seen(0, 2, 0)}, budget_of(0)).decisions[0];
+  const LayerDecision coarse = plan_of({seen(0, 2, 0)}, lod_budget(0)).decisions[0];
   EXPECT_EQ(coarse.action, Action::Reuse);
   EXPECT_TRUE(coarse.deferred);
   EXPECT_EQ(coarse.level, 2);
@@ -116,16 +116,16 @@ TEST(DecideLod, WhatRestsIsRefinedWhenThereIsTimeAndThenLeftAlone) {
 TEST(DecideLod, ASpriteWithoutASoundWarpIsDrawnAgainWhateverIsLeft) {
   LayerAssessment lost = seen(0, 0, 50);
   lost.matched_points = 0;
-  const FramePlan plan = plan_of({lost}, budget_of(0.1));
+  const FramePlan plan = plan_of({lost}, lod_budget(0.1));
   EXPECT_EQ(plan.decisions[0].action, Action::Rerender);
   EXPECT_EQ(plan.decisions[0].level, 2);
   EXPECT_FALSE(plan.lod->fits);
   for (LevelChoice& way : lost.levels) way.error_px = 1e6;  // the eye is inside of it
-  EXPECT_EQ(plan_of({lost}, budget_of(0.1)).decisions.size(), 1u);
+  EXPECT_EQ(plan_of({lost}, lod_budget(0.1)).decisions.size(), 1u);
 }
 
 TEST(DecideLod, PrintedBenefitsKeepASpriteThatIsNotOff) {
-  RegulatorOptions options = budget_of(0.5);
+  RegulatorOptions options = lod_budget(0.5);
   options.lod.benefit = LodBenefit::Printed;
   const FramePlan plan = plan_of({seen(0, 0, 0.1), seen(1, 0, 100)}, options);
   EXPECT_EQ(plan.decisions[0].action, Action::Reuse);
@@ -135,14 +135,14 @@ TEST(DecideLod, PrintedBenefitsKeepASpriteThatIsNotOff) {
 TEST(DecideLod, NothingInViewIsAPlan) {
   LayerAssessment out = appearing(0);
   out.in_view = false;
-  const FramePlan plan = plan_of({out}, budget_of(0));
+  const FramePlan plan = plan_of({out}, lod_budget(0));
   EXPECT_EQ(plan.decisions[0].reason, "out_of_view");
   EXPECT_TRUE(plan.lod->fits);
-  EXPECT_TRUE(plan_of({}, budget_of(1)).decisions.empty());
+  EXPECT_TRUE(plan_of({}, lod_budget(1)).decisions.empty());
 }
 
 TEST(SayLevels, OtherPoliciesDrawTheLevelThatWasChosenForThem) {
-  RegulatorOptions options = budget_of(kNoLimitMs);
+  RegulatorOptions options = lod_budget(kNoLimitMs);
   options.policy = Policy::Threshold;
   options.lod.by = LodSelector::Static;
   LayerAssessment fresh = appearing(0), old = seen(1, 2, 1);
@@ -159,7 +159,7 @@ TEST(SayLevels, OtherPoliciesDrawTheLevelThatWasChosenForThem) {
 }
 
 TEST(ChoosesLevels, OnlyWhereThePolicyKnowsHow) {
-  RegulatorOptions options = budget_of(1);
+  RegulatorOptions options = lod_budget(1);
   EXPECT_TRUE(chooses_levels(options));
   options.policy = Policy::Direct;
   EXPECT_FALSE(chooses_levels(options));
