@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
-#include <utility>
 
 #include "regulator/chunk_warp.h"
 #include "regulator/content_leaves.h"
@@ -25,9 +23,15 @@ struct Verdict {
   std::vector<double> px;        ///< by chunk; < 0: nothing known reaches into it
   std::vector<char> shown;       ///< by chunk
   std::vector<ChunkRect> reach;  ///< of each leaf, if it were drawn now
-  int over = 0;
   double worst_px = 0;
   std::size_t worst_leaf = 0;
+};
+
+/// A leaf as of an instant that its box reaches into chunks of.
+struct HeldLeaf {
+  std::size_t instant = 0, leaf = 0;
+  Corners then;
+  ChunkRect reach;
 };
 
 template <typename Visit>
@@ -52,35 +56,28 @@ class Judge {
       for (const ChunkRect& reach : chunks.instants[s]->reach) {
         char any = 0;
         for_each_chunk(reach, chunks.count.x, [&](std::size_t c) { any |= chunks.of_chunk[c] == s; });
-        held_.push_back(any);
+        holds_.push_back(any);
+      }
+    for (std::size_t s = 0; s < chunks.instants.size(); ++s)
+      for (std::size_t k = 0; k < leaves_.size(); ++k) {
+        if (!holds(s, leaves_[k].box)) continue;
+        held_.push_back({s, k, then_of(s, leaves_[k]), {}});
+        held_.back().reach = reach_of(held_.back().then, texel_from_first_);
       }
   }
 
   ChunkJudgement judge() {
     ChunkJudgement judgement;
     const std::vector<ChunkPlace> places = places_of_chunks();
-    std::optional<Verdict> best;
-    const ChunkWarps found = chunk_warps(places, chunks_.count, limits_);
+    const ChunkWarp found = chunk_warp(places, chunks_.count, limits_);
+    judgement.fitted = found.fitted;
     judgement.share.stored = stored();
-    if (!places.empty() && found.fewest_off > kMostChunksOver * judgement.share.stored &&
-        is_sound(found.warps.back())) {
+    if (!is_sound(found.fitted))
+      judgement.why_whole = found.fitted.warp.is_affine() ? "the warp folds" : "the warp is perspective";
+    else if (found.off > kMostChunksOver * judgement.share.stored)
       judgement.why_whole = "most of its chunks are off";
-      return judgement;
-    }
-    for (const warp::FitResult& fitted : found.warps) {
-      if (!is_sound(fitted)) {
-        if (!best)
-          judgement.why_whole = fitted.warp.is_affine() ? "the warp folds" : "the warp is perspective";
-        continue;
-      }
-      Verdict other = verdict(fitted.warp.affine());
-      if (best && other.over >= best->over) continue;
-      best = std::move(other);
-      judgement.fitted = fitted;
-      judgement.why_whole = {};
-      if (best->over == 0) break;
-    }
-    if (best) finish(*best, judgement);
+    else
+      finish(verdict(found.fitted.warp.affine()), judgement);
     return judgement;
   }
 
@@ -95,28 +92,26 @@ class Judge {
   }
 
   /// Does the box reach into a chunk of that instant?
-  bool holds(std::size_t s, std::size_t box) const { return held_[s * content_.boxes.size() + box] != 0; }
+  bool holds(std::size_t s, std::size_t box) const { return holds_[s * content_.boxes.size() + box] != 0; }
 
   /// For each chunk that shows something: the leaf nearest to its middle that is before the eye, then and now.
   std::vector<ChunkPlace> places_of_chunks() const {
     std::vector<ChunkPlace> nearest(chunks_.of_chunk.size());
     std::vector<double> distance(nearest.size(), HUGE_VAL);
-    for (std::size_t s = 0; s < chunks_.instants.size(); ++s)
-      for (const ContentLeaf& leaf : leaves_) {
-        if (!leaf.on_display || !holds(s, leaf.box)) continue;
-        const Corners then = then_of(s, leaf);
-        if (!is_before(then) || !is_before(leaf.now)) continue;
-        ChunkPlace place{-1, s == 0, middle_of(then), middle_of(leaf.now)};
-        for_each_chunk(reach_of(then, texel_from_first_), chunks_.count.x, [&](std::size_t c) {
-          if (chunks_.of_chunk[c] != s) return;
-          const double apart = glm::distance(texel_from_first_(place.then_px) / double(kRefreshChunk),
-                                             dvec2(column_and_row(c)) + 0.5);
-          if (!(apart < distance[c])) return;
-          distance[c] = apart;
-          place.chunk = static_cast<int>(c);
-          nearest[c] = place;
-        });
-      }
+    for (const HeldLeaf& held : held_) {
+      const ContentLeaf& leaf = leaves_[held.leaf];
+      if (!leaf.on_display || !is_before(held.then) || !is_before(leaf.now)) continue;
+      ChunkPlace place{-1, held.instant == 0, middle_of(held.then), middle_of(leaf.now)};
+      const dvec2 at = texel_from_first_(place.then_px) / double(kRefreshChunk);
+      for_each_chunk(held.reach, chunks_.count.x, [&](std::size_t c) {
+        if (chunks_.of_chunk[c] != held.instant) return;
+        const double apart = glm::distance(at, dvec2(column_and_row(c)) + 0.5);
+        if (!(apart < distance[c])) return;
+        distance[c] = apart;
+        place.chunk = static_cast<int>(c);
+        nearest[c] = place;
+      });
+    }
     std::erase_if(nearest, [](const ChunkPlace& place) { return place.chunk < 0; });
     return nearest;
   }
@@ -157,38 +152,43 @@ class Judge {
     v.reach.reserve(leaves_.size());
     for (const ContentLeaf& leaf : leaves_)
       v.reach.push_back(leaf.on_display ? reach_of(leaf.now, texel_from_screen) : ChunkRect{});
-    for (std::size_t s = 0; s < chunks_.instants.size(); ++s)
-      for (std::size_t k = 0; k < leaves_.size(); ++k) add(s, k, warp, v);
-    for (const double px : v.px) v.over += px > limits_.geometric_px;
+    for (const HeldLeaf& held : held_) add(held, warp, v);
+    for (std::size_t k = 0; k < leaves_.size(); ++k) add_entering(k, warp, v);
     return v;
   }
 
   /// What the chunks of one instant make of one leaf.
-  void add(std::size_t s, std::size_t k, const Affine2& warp, Verdict& v) const {
-    const ContentLeaf& leaf = leaves_[k];
-    const auto any_in = [&](const ChunkRect& rect) {
-      bool any = false;
-      for_each_chunk(rect, chunks_.count.x,
-                     [&](std::size_t c) { any = any || (chunks_.of_chunk[c] == s && v.shown[c]); });
-      return any;
-    };
-    const bool enters = any_in(v.reach[k]);
-    if (!enters && !holds(s, leaf.box)) return;
-    const Corners then = then_of(s, leaf);
+  void add(const HeldLeaf& held, const Affine2& warp, Verdict& v) const {
+    const ContentLeaf& leaf = leaves_[held.leaf];
+    const auto is_met = [&](std::size_t c) { return chunks_.of_chunk[c] == held.instant && v.shown[c]; };
+    bool any = false;
+    for (const ChunkRect& rect : {held.reach, v.reach[held.leaf]})
+      for_each_chunk(rect, chunks_.count.x, [&](std::size_t c) { any = any || is_met(c); });
+    if (!any) return;
     if (!leaf.on_display &&
-        box_reach(BoxCorners(then), warp, dvec2(display_px_), kDisplayMargin_px, near_m_).sight ==
+        box_reach(BoxCorners(held.then), warp, dvec2(display_px_), kDisplayMargin_px, near_m_).sight ==
             BoxSight::Outside)
       return;
-    const ChunkRect reach = reach_of(then, texel_from_first_);
-    if (!enters && !any_in(reach)) return;
-    const double px = apart_px(BoxCorners(then), warp, BoxCorners(leaf.now));
-    for (const ChunkRect& rect : {reach, v.reach[k]})
+    const double px = apart_px(BoxCorners(held.then), warp, BoxCorners(leaf.now));
+    for (const ChunkRect& rect : {held.reach, v.reach[held.leaf]})
       for_each_chunk(rect, chunks_.count.x, [&](std::size_t c) {
-        if (chunks_.of_chunk[c] == s && v.shown[c]) v.px[c] = std::max(v.px[c], px);
+        if (is_met(c)) v.px[c] = std::max(v.px[c], px);
       });
     if (px <= v.worst_px) return;
     v.worst_px = px;
-    v.worst_leaf = k;
+    v.worst_leaf = held.leaf;
+  }
+
+  /// The same for chunks of instants in which the leaf reached into none.
+  void add_entering(std::size_t k, const Affine2& warp, Verdict& v) const {
+    std::vector<std::size_t> instants;
+    for_each_chunk(v.reach[k], chunks_.count.x, [&](std::size_t c) {
+      const std::size_t s = chunks_.of_chunk[c];
+      if (v.shown[c] && !holds(s, leaves_[k].box) &&
+          std::find(instants.begin(), instants.end(), s) == instants.end())
+        instants.push_back(s);
+    });
+    for (const std::size_t s : instants) add({s, k, then_of(s, leaves_[k]), {}}, warp, v);
   }
 
   void finish(const Verdict& best, ChunkJudgement& judgement) const {
@@ -266,23 +266,20 @@ class Judge {
     const std::size_t fresh = chunks_.instants.size();
     std::vector<std::size_t> age(chunks_.of_chunk.begin(), chunks_.of_chunk.end());
     for (const int c : judgement.over) age[c] = fresh;
-    for (std::size_t k = 0; k < leaves_.size(); ++k) {
-      if (!leaves_[k].on_display) continue;
-      std::vector<Corners> shown;  // where its pictures are
-      for (std::size_t s = 0; s <= fresh; ++s) {
-        if (s < fresh && !holds(s, leaves_[k].box)) continue;
-        Corners places = s == fresh ? leaves_[k].now : then_of(s, leaves_[k]);
-        bool any = false;
-        for_each_chunk(s == fresh ? best.reach[k] : reach_of(places, texel_from_first_), chunks_.count.x,
-                       [&](std::size_t c) { any = any || (age[c] == s && best.shown[c]); });
-        if (!any) continue;
-        if (s < fresh)
-          for (dvec3& place : places) place = mapped(warp, place);
-        for (const Corners& other : shown)
-          note_step(apart_px(BoxCorners(other), {}, BoxCorners(places)), judgement);
-        shown.push_back(places);
-      }
-    }
+    std::vector<std::vector<Corners>> shown(leaves_.size());  // where the pictures of each leaf are
+    const auto note = [&](std::size_t k, std::size_t instant, const ChunkRect& reach, Corners places) {
+      bool any = false;
+      for_each_chunk(reach, chunks_.count.x,
+                     [&](std::size_t c) { any = any || (age[c] == instant && best.shown[c]); });
+      if (!any || !leaves_[k].on_display) return;
+      if (instant != fresh)
+        for (dvec3& place : places) place = mapped(warp, place);
+      for (const Corners& other : shown[k])
+        note_step(apart_px(BoxCorners(other), {}, BoxCorners(places)), judgement);
+      shown[k].push_back(places);
+    };
+    for (const HeldLeaf& held : held_) note(held.leaf, held.instant, held.reach, held.then);
+    for (std::size_t k = 0; k < leaves_.size(); ++k) note(k, fresh, best.reach[k], leaves_[k].now);
   }
 
   void note_step(double px, ChunkJudgement& judgement) const {
@@ -297,7 +294,8 @@ class Judge {
   const ChunkLimits& limits_;
   double near_m_;
   std::vector<ContentLeaf> leaves_;
-  std::vector<char> held_;  ///< by instant and box
+  std::vector<char> holds_;     ///< by instant and box
+  std::vector<HeldLeaf> held_;  ///< by instant and leaf
   Affine2 texel_from_first_;
 };
 

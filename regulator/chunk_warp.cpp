@@ -61,10 +61,14 @@ bool is_sound(const warp::FitResult& fitted) {
   return map.determinant() > 0 && inverse(map).has_value();
 }
 
-ChunkWarps chunk_warps(const std::vector<ChunkPlace>& places, layers::ivec2 count,
-                       const ChunkLimits& limits) {
-  std::size_t most = 0;
-  ChunkWarps found;
+ChunkWarp chunk_warp(const std::vector<ChunkPlace>& places, layers::ivec2 count, const ChunkLimits& limits) {
+  ChunkWarp best{fit_to(places, limits), static_cast<int>(places.size())};
+  const auto take_if_better = [&](const warp::FitResult& fitted) {
+    const std::size_t within_it = within(places, fitted.warp.affine(), limits.geometric_px).size();
+    const int off = static_cast<int>(places.size() - within_it);
+    if (off < best.off || !is_sound(best.fitted)) best = {fitted, off};
+  };
+  if (is_sound(best.fitted)) take_if_better(best.fitted);
   for (int beginning = 0; beginning < kBeginnings; ++beginning) {
     std::vector<ChunkPlace> some;
     for (const ChunkPlace& place : places)
@@ -73,19 +77,11 @@ ChunkWarps chunk_warps(const std::vector<ChunkPlace>& places, layers::ivec2 coun
       if (some.size() < kFewestPlaces) break;
       const warp::FitResult fitted = fit_to(some, limits);
       if (!is_sound(fitted)) break;
+      if (share == kWithin.back()) take_if_better(fitted);
       some = within(places, fitted.warp.affine(), share * limits.geometric_px);
-      if (share != kWithin.back() || some.size() <= most) continue;
-      most = some.size();
-      found.warps.assign(1, fitted);
     }
   }
-  found.warps.push_back(fit_to(places, limits));
-  std::size_t most_within = 0;
-  for (const warp::FitResult& fitted : found.warps)
-    if (is_sound(fitted))
-      most_within = std::max(most_within, within(places, fitted.warp.affine(), limits.geometric_px).size());
-  found.fewest_off = static_cast<int>(places.size() - most_within);
-  return found;
+  return best;
 }
 
 }  // namespace talisman::regulator

@@ -22,12 +22,11 @@ struct ChunkPlace {
 /// The warp keeps fronts fronts, and can be undone and drawn through.
 bool is_sound(const warp::FitResult& fitted);
 
-struct ChunkWarps {
-  std::vector<warp::FitResult> warps;  ///< the best by places alone, if there is one, and that of all of them
-  int fewest_off =
-      0;  ///< places that are farther off than δ, whichever of these is taken: no fewer chunks are over
+struct ChunkWarp {
+  warp::FitResult fitted;  ///< that of all places where none is sound
+  int off = 0;             ///< places that it leaves farther off than δ: no fewer chunks are over
 };
 /// Cost: O(places).
-ChunkWarps chunk_warps(const std::vector<ChunkPlace>& places, layers::ivec2 count, const ChunkLimits& limits);
+ChunkWarp chunk_warp(const std::vector<ChunkPlace>& places, layers::ivec2 count, const ChunkLimits& limits);
 
 }  // namespace talisman::regulator

@@ -16,7 +16,7 @@
 
 namespace talisman::regulator {
 
-inline constexpr double kLeafExtent_px = 48;
+inline constexpr double kLeafExtent_px = 64;
 inline constexpr int kMostHalvings = 8;
 
 using Corners = std::array<layers::dvec3, kBoxCorners>;

@@ -16,6 +16,13 @@ namespace talisman::sequences {
 
 namespace {
 
+std::optional<double> light_beside_px_of(const FrameReport& report) {
+  std::optional<double> px;
+  for (const ShownSprite& shown : report.shown)
+    if (shown.beside_base_px) px = std::max(px.value_or(0), *shown.beside_base_px);
+  return px;
+}
+
 /// What is known of a frame that was drawn.
 void add_drawing(FrameLine& line, const FrameReport& report) {
   line.frame_hash = hash_of(report.picture);
@@ -76,9 +83,7 @@ FrameLine line_of(const FrameReport& report) {
     line.visibility = {report.order.counters, report.order.merged_parts, report.order.resolved_counters()};
     line.times.sort_ms = report.order.sort_ms;
   }
-  for (const ShownSprite& shown : report.shown)
-    if (shown.beside_base_px)
-      line.light_beside_px = std::max(line.light_beside_px.value_or(0), *shown.beside_base_px);
+  line.light_beside_px = light_beside_px_of(report);
   line.budget_gap = report.budget_gap;
   line.lod = report.plan.lod;
   line.lookahead = report.lookahead;
