@@ -162,7 +162,8 @@ void add_surroundings(DocumentedKeys& out, const Source& source) {
   out.page().line("");
   out.put("", top(), "background",
           yaml_color(source.stage.backdrop.value_or(source.bare.model.scene.background)));
-  for (const char* key : {"sky", "terrain", "images", "swarm", "building", "cells", "portals", "visibility"})
+  for (const char* key :
+       {"sky", "terrain", "images", "swarm", "building", "cells", "portals", "visibility", "cuts"})
     out.off("", top(), key);
   if (!source.stage.ground) return out.off("", top(), "shapes");
   const MapKeys& keys = keys_below(top(), "shapes");

@@ -105,7 +105,10 @@ TEST(MeasureRegulator, AllOthersLoseSomethingAndEveryNumberIsFinite) {
   for (const SettingResult& r : everything()) {
     SCOPED_TRACE(r.setting.series + " " + r.setting.knob());
     if (r.setting.series == "reference") continue;
-    EXPECT_LT(r.renders, everything().front().renders);
+    // A series "threshold in 8" has eight layers for each.
+    const std::size_t in = r.setting.series.find(" in ");
+    const int pieces = in == std::string::npos ? 1 : std::stoi(r.setting.series.substr(in + 4));
+    EXPECT_LT(r.renders, pieces * everything().front().renders);
     for (const double value : {r.quality.psnr_db, r.quality.ssim, r.quality.flip, r.mean_geometric_px,
                                r.max_geometric_px, r.popping.rms, r.modelled_ms, r.frame_ms()})
       EXPECT_TRUE(std::isfinite(value));

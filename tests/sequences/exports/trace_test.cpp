@@ -102,7 +102,8 @@ TEST_F(Trace, WithoutTimingItHasTheSameBytesEverywhere) {
     return std::count_if(t["traceEvents"].begin(), t["traceEvents"].end(),
                          [](const Json& event) { return event["pid"] == 2; });
   };
-  EXPECT_GT(measured(timed), 40 * 3);
+  // Plan and composite of each frame; what takes less than a microsecond, as drawing nothing may, is not there.
+  EXPECT_GE(measured(timed), 40 * 2);
   EXPECT_EQ(measured(untimed), 0);
   const std::string first = read("o/trace.json");
   ASSERT_EQ(
