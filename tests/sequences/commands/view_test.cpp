@@ -290,7 +290,7 @@ TEST_F(View, EndsOnCtrlC) {
   if (!has_report()) GTEST_SKIP() << "this build has no live view";
   write("wait.sh", "'" + tool() +
                        "' view passing.yaml > said & pid=$!\n"
-                       "while ! grep -q token said; do sleep 0.01; done\nkill -INT $pid\nwait $pid\n");
+                       "while ! grep -qs token said; do sleep 0.01; done\nkill -INT $pid\nwait $pid\n");
   const Outcome outcome = run_shell("timeout 60 bash wait.sh");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.output;
   EXPECT_EQ(outcome.output, "");
