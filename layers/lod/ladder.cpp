@@ -27,7 +27,7 @@ std::string defect_of_level(const Ladder& ladder, std::size_t k) {
 
 std::string first_defect(const Ladder& ladder) {
   for (std::size_t k = 0; k < ladder.levels.size(); ++k)
-    if (const std::string defect = defect_of_level(ladder, k); !defect.empty()) return defect;
+    if (std::string defect = defect_of_level(ladder, k); !defect.empty()) return defect;
   return {};
 }
 

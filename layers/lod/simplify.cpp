@@ -136,7 +136,7 @@ std::string try_to_add(BuiltLadder& built, const Mesh& base, Mesh level, double 
   // A finer level may be off by more than a coarser one at the samples: what is coarser is trusted no more.
   const double error_m = std::max(distance.error_m(), built.ladder.levels.back().error_m);
   built.ladder.levels.push_back(figures(level, error_m));
-  if (const std::string defect = first_defect(built.ladder); !defect.empty()) {
+  if (std::string defect = first_defect(built.ladder); !defect.empty()) {
     built.ladder.levels.pop_back();
     return defect;
   }

@@ -8,7 +8,7 @@
 
 namespace talisman::regulator {
 
-LevelCache::LevelCache(std::vector<std::vector<std::int64_t>> level_bytes, std::int64_t limit_bytes)
+LevelCache::LevelCache(const std::vector<std::vector<std::int64_t>>& level_bytes, std::int64_t limit_bytes)
     : resident_(level_bytes.size(), 0), claimed_(level_bytes.size(), 0), limit_bytes_(limit_bytes) {
   TALISMAN_CHECK_EQ(first_defect(level_bytes), "");
   for (const std::vector<std::int64_t>& item : level_bytes) {

@@ -45,7 +45,7 @@ struct MemoryFrame {
 class LevelCache {
  public:
   /// `level_bytes`: by item, from the coarsest level, each ≥ 0. `limit_bytes` ≥ 0.
-  LevelCache(std::vector<std::vector<std::int64_t>> level_bytes, std::int64_t limit_bytes);
+  LevelCache(const std::vector<std::vector<std::int64_t>>& level_bytes, std::int64_t limit_bytes);
 
   /// `seen`: by the object, what it is drawn with if it is there. `ahead`: in the order in which it is claimed.
   /// `read_bytes` ≥ 0: what can be read until it is drawn. Cost: O((wants + what lies in memory) log).

@@ -30,7 +30,7 @@ int count_frames(const fs::path& folder, int first, const std::string& extension
 
 /// What ffmpeg says that it can encode.
 ChildResult list_of_encoders() {
-  const ChildResult list = run_child({"ffmpeg", "-hide_banner", "-encoders"});
+  ChildResult list = run_child({"ffmpeg", "-hide_banner", "-encoders"});
   if (!list.started)
     throw OutputError("video: ffmpeg cannot be started (" + list.output + "); install the package ffmpeg");
   if (!list.succeeded()) throw OutputError("video: ffmpeg failed: " + list.reason());

@@ -36,7 +36,7 @@ std::vector<char> seen_parts(const Sequence& sequence, Settings settings, const 
   settings.visibility = options;
   const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, settings);
   PipelineState state(pipeline);
-  const std::vector<char> seen = seen_at(pipeline, state, frame)->part;
+  std::vector<char> seen = seen_at(pipeline, state, frame)->part;
   now = state.culling->now, boxes = state.culling->boxes;
   return seen;
 }
