@@ -13,6 +13,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/check.h"
+#include "layers/vertex_copy.h"
 
 namespace talisman::layers {
 
@@ -97,11 +98,6 @@ std::vector<CutPiece> divided(const Mesh& mesh, std::size_t count) {
   return pieces;
 }
 
-template <typename Array>
-void copy_one(const Array& from, std::uint32_t vertex, Array& to) {
-  if (!from.empty()) to.push_back(from[vertex]);
-}
-
 /// The triangles, in their old order, with the vertices that they use.
 Mesh mesh_of(const Mesh& from, const CutTriangles& triangles) {
   Mesh mesh;
@@ -109,14 +105,7 @@ Mesh mesh_of(const Mesh& from, const CutTriangles& triangles) {
   const auto copied = [&](std::uint32_t vertex) {
     const auto [it, is_new] = copy_of.emplace(vertex, static_cast<std::uint32_t>(mesh.positions.size()));
     if (!is_new) return it->second;
-    copy_one(from.positions, vertex, mesh.positions);
-    copy_one(from.normals, vertex, mesh.normals);
-    copy_one(from.uvs, vertex, mesh.uvs);
-    copy_one(from.emissive_uvs, vertex, mesh.emissive_uvs);
-    copy_one(from.normal_uvs, vertex, mesh.normal_uvs);
-    copy_one(from.tangents, vertex, mesh.tangents);
-    copy_one(from.colors, vertex, mesh.colors);
-    copy_one(from.alphas, vertex, mesh.alphas);
+    append_rigid_vertex(from, vertex, mesh);
     return it->second;
   };
   for (const std::uint32_t t : triangles)

@@ -135,8 +135,8 @@ Factoring found_layers(Sequence& sequence, BuiltScene& built, const std::vector<
   for (const CutEntry& cut : with_cuts.cuts)
     sequence.notes.push_back(formatted("part '%s' is cut into %d, with seam: auto: one warp would not serve",
                                        layers::name_of_glob(cut.parts).c_str(), cut.into));
-  if (with_cuts.scene) {
-    built.scene = std::move(*with_cuts.scene);
+  if (!with_cuts.cuts.empty()) {
+    apply_cuts(with_cuts.cuts, built.scene);
     sequence.seam = Seam::Auto;  // else cracks open between what was whole
   }
   return std::move(found);

@@ -55,6 +55,14 @@ std::vector<int> sampled_frames(const ExperimentFrames& frames) {
   return sampled;
 }
 
+std::vector<int> drawn_frames(const ExperimentFrames& frames) {
+  std::vector<int> drawn;
+  for (const int frame : sampled_frames(frames))
+    for (const int either : {frame - 1, frame})
+      if (either >= 0 && (drawn.empty() || drawn.back() < either)) drawn.push_back(either);
+  return drawn;
+}
+
 bool is_sampled(const std::vector<int>& sampled, int frame) {
   return std::binary_search(sampled.begin(), sampled.end(), frame);
 }

@@ -27,6 +27,9 @@ std::vector<int> compared_holds();
 /// The frames f that are drawn together with their predecessors, ascending; at least one.
 std::vector<int> sampled_frames(const ExperimentFrames& frames);
 
+/// These and their predecessors, each once, ascending: all of which there are pictures.
+std::vector<int> drawn_frames(const ExperimentFrames& frames);
+
 /// Is the frame one of them? O(log n).
 bool is_sampled(const std::vector<int>& sampled, int frame);
 

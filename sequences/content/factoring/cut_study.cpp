@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <optional>
 #include <span>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -23,29 +26,9 @@ using layers::LayerSpec;
 using layers::Scene;
 
 /// What plans need: all but the texels.
-Scene planned_part_of(const Scene& scene) {
-  Scene copy;
-  copy.meshes = scene.meshes;
-  for (const layers::Texture& texture : scene.textures)
-    copy.textures.push_back({texture.name,
-                             texture.width,
-                             texture.height,
-                             {},
-                             texture.has_alpha,
-                             texture.wrap_u,
-                             texture.wrap_v,
-                             texture.nearest,
-                             texture.nearest_minified});
-  copy.moving_pictures = scene.moving_pictures;
-  copy.materials = scene.materials;
-  copy.skins = scene.skins;
-  copy.nodes = scene.nodes;
-  copy.tracks = scene.tracks;
-  copy.lights = scene.lights;
-  copy.cameras = scene.cameras;
-  copy.parts = scene.parts;
-  copy.background = scene.background;
-  copy.active_camera = scene.active_camera;
+Scene without_texels(const Scene& scene) {
+  Scene copy = scene;
+  for (layers::Texture& texture : copy.textures) texture.rgba = {};
   return copy;
 }
 
@@ -70,8 +53,11 @@ class Cutting {
 
   std::vector<CutEntry> worth_making() const {
     std::vector<CutEntry> cuts;
-    for (const int part : parts_to_try())
-      if (const int into = best_number(part); into > 1)
+    const std::vector<int> parts = parts_to_try();
+    if (parts.empty()) return cuts;
+    const Scene planned = without_texels(unfactored_.scene);
+    for (const int part : parts)
+      if (const int into = best_number(planned, part); into > 1)
         cuts.push_back({layers::glob_of_name(unfactored_.scene.parts[part].name), into, "", 0});
     return cuts;
   }
@@ -118,15 +104,15 @@ class Cutting {
   }
 
   /// Into how many pieces a part that is alone costs least; 1: as it is.
-  int best_number(int part) const {
-    const std::string name = unfactored_.scene.parts[part].name;
+  int best_number(const Scene& uncut, int part) const {
+    const std::string name = uncut.parts[part].name;
     const LayerSpec whole = layer_of_part(name);
     double least_ms =
         (1 - kCutMustSave) *
-        plans_apart(unfactored_.scene, std::span(&whole, 1), unfactored_.settings, frames_).front().work_ms();
+        plans_apart(uncut, std::span(&whole, 1), unfactored_.settings, frames_).front().work_ms();
     int best = 1;
     for (const int pieces : kTriedPieces) {
-      Scene scene = planned_part_of(unfactored_.scene);
+      Scene scene = uncut;
       const int made = layers::cut_part(scene, part, pieces);
       std::vector<LayerSpec> specs;
       for (int k = 1; k <= made; ++k) specs.push_back(layer_of_part(layers::cut_piece_name(name, k)));
@@ -146,16 +132,11 @@ class Cutting {
   int frames_;
 };
 
-}  // namespace
-
-namespace {
-
 double ms_a_frame(const PlannedFactoring& plan) { return plan.work_ms() / plan.frames; }
 
 /// With what its layers draw beyond the edges that they share, without which cracks would open between pieces.
-double ms_with_seams(const Unfactored& unfactored, const Scene& cut, const Factoring& chosen) {
-  const Settings& settings = unfactored.settings;
-  Scene seamed = planned_part_of(cut);
+double ms_with_seams(const Settings& settings, const Scene& cut, const Factoring& chosen) {
+  Scene seamed = cut;
   std::vector<LayerSpec> specs = chosen.specs;
   add_seams(
       seamed,
@@ -171,22 +152,23 @@ CutStudy study_with_cuts(const Unfactored& scene, const AutoLayers& options) {
   CutStudy best{study(scene, options)};
   if (options.way != FactoringWay::Velocity || best.study.chosen.plan.frames < 2) return best;
   double least_ms = ms_a_frame(best.study.chosen.plan);
+  std::optional<Scene> best_scene;  // without texels; none: as it was given
   for (int round = 0; round < kCutRounds; ++round) {
     if (scene.begins) scene.begins("planning parts whole and cut");
-    const Scene& now = best.scene ? *best.scene : scene.scene;
+    const Scene& now = best_scene ? *best_scene : scene.scene;
     const std::vector<CutEntry> cuts =
         Cutting({now, scene.kept, scene.nodes, scene.settings}, best.study).worth_making();
     if (cuts.empty()) break;
-    Scene cut_scene = now;
+    Scene cut_scene = without_texels(now);
     apply_cuts(cuts, cut_scene);
     FactoringStudy cut_study =
         study({cut_scene, scene.kept, scene.nodes, scene.settings, scene.begins}, options);
-    const double ms = ms_with_seams(scene, cut_scene, cut_study.chosen);
+    const double ms = ms_with_seams(scene.settings, cut_scene, cut_study.chosen);
     if (!(ms < (1 - kCutsMustSave) * least_ms)) break;
     least_ms = ms;
     best.study = std::move(cut_study);
-    best.scene = std::move(cut_scene);
     best.cuts.insert(best.cuts.end(), cuts.begin(), cuts.end());
+    best_scene = std::move(cut_scene);
   }
   return best;
 }

@@ -4,7 +4,6 @@
 /// Parts that are cut before anything is factored: the list `cuts` of a sequence file, `{parts: GLOB, into: N}`, and how it
 /// is found which parts are worth it.
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,8 +47,8 @@ inline constexpr int kCutRounds = 3;
 ///   3  the cuts stay if that, with seams (layers/seam.h), costs less by kCutsMustSave; then the pieces may be cut again
 struct CutStudy {
   FactoringStudy study;
-  std::vector<CutEntry> cuts{};          ///< none: nothing is worth it
-  std::optional<layers::Scene> scene{};  ///< with them, of which the study is; empty where there are none
+  std::vector<CutEntry>
+      cuts{};  ///< with which the scene is that the study is of (apply_cuts); none: nothing is worth it
 };
 
 /// Only FactoringWay::Velocity cuts. Cost: as `study`, and again where something is cut.

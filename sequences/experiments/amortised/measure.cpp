@@ -119,10 +119,8 @@ std::map<int, Image8> truth_of(const Sequence& sequence, const Settings& setting
                                const ExperimentFrames& frames, const chunker::PreparedScene& prepared) {
   const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, settings);
   std::map<int, Image8> pictures;
-  for (const int frame : sampled_frames(frames))
-    for (const int drawn : {frame - 1, frame})
-      if (drawn >= 0 && !pictures.contains(drawn))
-        pictures[drawn] = to_image8(draw_direct(pipeline, drawn, prepared));
+  for (const int frame : drawn_frames(frames))
+    pictures[frame] = to_image8(draw_direct(pipeline, frame, prepared));
   return pictures;
 }
 

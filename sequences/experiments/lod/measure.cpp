@@ -93,10 +93,8 @@ std::map<int, Image8> full_detail(const Sequence& sequence, const Settings& sett
                                   const ExperimentFrames& frames, const chunker::PreparedScene& prepared) {
   const Pipeline pipeline = make_pipeline(*sequence.scene, sequence.layers, settings);
   std::map<int, Image8> pictures;
-  for (const int frame : sampled_frames(frames))
-    for (const int drawn : {frame - 1, frame})
-      if (drawn >= 0 && !pictures.contains(drawn))
-        pictures[drawn] = to_image8(draw_reference(pipeline, drawn, prepared));
+  for (const int frame : drawn_frames(frames))
+    pictures[frame] = to_image8(draw_reference(pipeline, frame, prepared));
   return pictures;
 }
 

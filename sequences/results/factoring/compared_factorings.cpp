@@ -174,7 +174,7 @@ Sequence with_layers(const Sequence& sequence, const Factoring& factoring) {
 
 namespace {
 
-/// The sequence as it is, of the scene whose parts are cut: the pieces of a part are in its layer.
+/// The sequence as it is, of the scene whose parts are cut, with seams: the pieces of a part are in its layer.
 Sequence with_cuts(const Sequence& sequence, const CutStudy& found) {
   Sequence cut = sequence;
   const std::vector<int> now = layers_now(sequence);
@@ -185,7 +185,10 @@ Sequence with_cuts(const Sequence& sequence, const CutStudy& found) {
       for (LayerSpec& spec : cut.layer_specs)
         if (spec.name == layer) spec.part_globs.push_back(entry.parts + "~*");
     }
-  cut.scene = std::make_shared<const layers::Scene>(*found.scene);
+  layers::Scene scene = *sequence.scene;
+  apply_cuts(found.cuts, scene);
+  cut.scene = std::make_shared<const layers::Scene>(std::move(scene));
+  cut.seam = Seam::Auto;  // as the lines to paste say (cuts_yaml)
   cut.layers = layers::factor(*cut.scene, cut.layer_specs);
   return cut;
 }
@@ -201,7 +204,7 @@ ComparedFactoring compare_factorings(const Sequence& sequence, const AutoLayers&
   settings.explicit_order.clear();
   ComparedFactoring compared;
   CutStudy found = study_with_cuts({*sequence.scene, std::move(kept), {}, settings, begins}, options);
-  const Sequence cut = found.scene ? with_cuts(sequence, found) : sequence;
+  const Sequence cut = found.cuts.empty() ? sequence : with_cuts(sequence, found);
   compared.study = std::move(found.study);
   compared.cuts = std::move(found.cuts);
   std::vector<std::pair<std::string, const Factoring*>> proposals{{"proposed", &compared.study.chosen}};

@@ -38,6 +38,13 @@ TEST(SampledFrames, HaveAPredecessorWhereTheyCan) {
   EXPECT_THAT(sampled_frames({0, 0, 2}), testing::ElementsAre(0));
 }
 
+TEST(SampledFrames, AreDrawnWithTheirPredecessorsEachOnce) {
+  using testing::ElementsAre;
+  EXPECT_THAT(drawn_frames({0, 3, 1}), ElementsAre(0, 1, 2, 3));
+  EXPECT_THAT(drawn_frames({5, 5, 9}), ElementsAre(4, 5));
+  EXPECT_THAT(drawn_frames({0, 0, 1}), ElementsAre(0)) << "there is none before the first";
+}
+
 TEST(SampledFrames, OneFrameIsEnough) { EXPECT_THAT(sampled_frames({5, 5, 9}), testing::ElementsAre(5)); }
 
 TEST(IsSampled, OnlyWhatIsInTheList) {
