@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -13,7 +12,7 @@
 #include <glm/geometric.hpp>
 
 #include "layers/check.h"
-#include "layers/vertex_copy.h"
+#include "layers/mesh_subset.h"
 
 namespace talisman::layers {
 
@@ -98,19 +97,12 @@ std::vector<CutPiece> divided(const Mesh& mesh, std::size_t count) {
   return pieces;
 }
 
-/// The triangles, in their old order, with the vertices that they use.
+/// The triangles, in their old order.
 Mesh mesh_of(const Mesh& from, const CutTriangles& triangles) {
-  Mesh mesh;
-  std::unordered_map<std::uint32_t, std::uint32_t> copy_of;
-  const auto copied = [&](std::uint32_t vertex) {
-    const auto [it, is_new] = copy_of.emplace(vertex, static_cast<std::uint32_t>(mesh.positions.size()));
-    if (!is_new) return it->second;
-    append_rigid_vertex(from, vertex, mesh);
-    return it->second;
-  };
+  std::vector<std::uint32_t> indices;
   for (const std::uint32_t t : triangles)
-    for (std::size_t k = 0; k < 3; ++k) mesh.indices.push_back(copied(from.indices[3 * std::size_t{t} + k]));
-  return mesh;
+    for (std::size_t k = 0; k < 3; ++k) indices.push_back(from.indices[3 * std::size_t{t} + k]);
+  return with_triangles(from, indices);
 }
 
 }  // namespace
@@ -136,7 +128,6 @@ int cut_part(Scene& scene, int part, int pieces) {
     piece.name = cut_piece_name(whole.name, static_cast<int>(k) + 1);
     piece.mesh = static_cast<int>(scene.meshes.size());
     scene.meshes.push_back(mesh_of(from, found[k].triangles));
-    scene.meshes.back().name = from.name;
     if (k == 0)
       scene.parts[static_cast<std::size_t>(part)] = std::move(piece);
     else

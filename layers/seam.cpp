@@ -12,7 +12,6 @@
 
 #include "layers/animation.h"
 #include "layers/state.h"
-#include "layers/vertex_copy.h"
 
 namespace talisman::layers {
 namespace {
@@ -243,11 +242,21 @@ class PieceBuilder {
     return between(inside, outside, out, cut_of_);
   }
 
+  template <typename Array>
+  static void copy_one(const Array& from, std::uint32_t vertex, Array& to) {
+    if (!from.empty()) to.push_back(from[vertex]);
+  }
   std::uint32_t copied(std::uint32_t vertex) {
     const auto [it, is_new] = copy_of_.emplace(vertex, static_cast<std::uint32_t>(places_.size()));
     if (!is_new) return it->second;
     note_place(world_[vertex], holds_given(vertex));
-    append_rigid_vertex(from_, vertex, mesh_);
+    copy_one(from_.positions, vertex, mesh_.positions);
+    copy_one(from_.normals, vertex, mesh_.normals);
+    copy_one(from_.uvs, vertex, mesh_.uvs);
+    copy_one(from_.emissive_uvs, vertex, mesh_.emissive_uvs);
+    copy_one(from_.normal_uvs, vertex, mesh_.normal_uvs);
+    copy_one(from_.tangents, vertex, mesh_.tangents);
+    copy_one(from_.colors, vertex, mesh_.colors);
     return it->second;
   }
 

@@ -9,29 +9,10 @@
 #include <numeric>
 
 #include "layers/lod/surface_distance.h"
+#include "layers/mesh_subset.h"
 
 namespace talisman::layers {
 namespace {
-
-/// All arrays of vertices in turn. `mesh` may be const.
-template <typename M, typename F>
-void for_each_array(M& mesh, const F& visit) {
-  visit(mesh.positions);
-  visit(mesh.normals);
-  visit(mesh.uvs);
-  visit(mesh.emissive_uvs);
-  visit(mesh.normal_uvs);
-  visit(mesh.tangents);
-  visit(mesh.colors);
-  visit(mesh.alphas);
-  visit(mesh.joints);
-  visit(mesh.weights);
-  for (auto& morph : mesh.morphs) {
-    visit(morph.positions);
-    visit(morph.normals);
-    visit(morph.tangents);
-  }
-}
 
 /// For each vertex the first one that equals it in everything.
 std::vector<std::uint32_t> first_equal(const Mesh& mesh) {
@@ -57,29 +38,6 @@ std::vector<std::uint32_t> first_equal(const Mesh& mesh) {
   for (std::size_t i = 0; i < count; ++i)
     first[order[i]] = i > 0 && compare(order[i - 1], order[i]) == 0 ? first[order[i - 1]] : order[i];
   return first;
-}
-
-/// The mesh with these triangles alone, and the vertices that they use, in their order.
-Mesh with_triangles(const Mesh& mesh, const std::vector<std::uint32_t>& indices) {
-  constexpr std::uint32_t kUnused = ~0u;
-  std::vector<std::uint32_t> place(mesh.positions.size(), kUnused), kept;
-  for (const std::uint32_t v : indices) place[v] = 0;
-  for (std::uint32_t v = 0; v < place.size(); ++v)
-    if (place[v] != kUnused) {
-      place[v] = static_cast<std::uint32_t>(kept.size());
-      kept.push_back(v);
-    }
-  Mesh result = mesh;
-  for_each_array(result, [&](auto& array) {
-    if (array.empty()) return;
-    auto all = std::move(array);
-    array.clear();
-    array.reserve(kept.size());
-    for (const std::uint32_t v : kept) array.push_back(all[v]);
-  });
-  result.indices.clear();
-  for (const std::uint32_t v : indices) result.indices.push_back(place[v]);
-  return result;
 }
 
 /// Triangles of which two corners are one vertex cover nothing.
