@@ -16,6 +16,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <string>
 #include <variant>
@@ -277,6 +278,8 @@ struct SceneFrame {
   std::vector<int> picture_frames;
 };
 
+struct LevelSet;  // layers/lod/levels.h
+
 struct Scene {
   std::vector<Mesh> meshes;
   std::vector<Texture> textures;
@@ -290,6 +293,8 @@ struct Scene {
   std::vector<Part> parts;
   vec3 background{0, 0, 0};  ///< linear, behind all layers
   int active_camera = 0;
+  /// Coarser meshes and parts, which lie behind all others (layers/lod/levels.h); null: there are none.
+  std::shared_ptr<const LevelSet> levels;
 
   /// The scene at time `t_s` (any finite value; tracks hold or loop outside their keys). Pure, and finite for
   /// a scene without defects (a product of matrices that overflows leaves the node with its parent). Tracks

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
+#include "layers/check.h"
 #include "layers/seam.h"
 
 namespace talisman::layers {
@@ -33,15 +36,15 @@ double largest_stretch(const dmat4& m) {
 
 }  // namespace
 
-SceneWithLevels with_levels(Scene scene, const LayerSet& set, LadderOptions options) {
-  SceneWithLevels result{std::move(scene), {}};
-  Scene& all = result.scene;
+Scene with_levels(Scene all, const LayerSet& set, LadderOptions options) {
+  TALISMAN_CHECK(!all.levels);
+  LevelSet made;
   const std::size_t meshes = all.meshes.size(), parts = all.parts.size();
   std::vector<bool> is_drawn(meshes, false);
   for (const Part& part : all.parts)
     if (!part.is_seam && part.mesh >= 0) is_drawn[static_cast<std::size_t>(part.mesh)] = true;
   const std::vector<bool> locked = meshes_with_neighbours(all, set);
-  result.levels.ladders.resize(meshes);
+  made.ladders.resize(meshes);
   for (std::size_t m = 0; m < meshes; ++m) {
     if (!is_drawn[m]) continue;
     options.lock_borders = locked[m];
@@ -49,13 +52,13 @@ SceneWithLevels with_levels(Scene scene, const LayerSet& set, LadderOptions opti
     for (std::size_t k = 0; k < built.ladder.levels.size(); ++k)
       built.ladder.levels[k].mesh = static_cast<int>(k == 0 ? m : all.meshes.size() + k - 1);
     for (Mesh& mesh : built.coarser) all.meshes.push_back(std::move(mesh));
-    result.levels.ladders[m] = std::move(built.ladder);
+    made.ladders[m] = std::move(built.ladder);
   }
   for (std::size_t p = 0; p < parts; ++p) {
     std::vector<int> levels{static_cast<int>(p)};
     const Part own = all.parts[p];
     if (!own.is_seam && own.mesh >= 0)
-      for (const LadderLevel& level : result.levels.ladders[static_cast<std::size_t>(own.mesh)].levels) {
+      for (const LadderLevel& level : made.ladders[static_cast<std::size_t>(own.mesh)].levels) {
         if (level.mesh == own.mesh) continue;
         Part part = own;
         part.mesh = level.mesh;
@@ -63,14 +66,17 @@ SceneWithLevels with_levels(Scene scene, const LayerSet& set, LadderOptions opti
         levels.push_back(static_cast<int>(all.parts.size()));
         all.parts.push_back(std::move(part));
       }
-    result.levels.parts.push_back(std::move(levels));
+    made.parts.push_back(std::move(levels));
   }
-  return result;
+  all.levels = std::make_shared<const LevelSet>(std::move(made));
+  return all;
 }
 
-Scene without_levels(Scene scene, const LevelSet& levels) {
-  scene.meshes.resize(levels.ladders.size());
-  scene.parts.resize(levels.parts.size());
+Scene without_levels(Scene scene) {
+  if (!scene.levels) return scene;
+  scene.meshes.resize(scene.levels->ladders.size());
+  scene.parts.resize(scene.levels->parts.size());
+  scene.levels = nullptr;
   return scene;
 }
 
@@ -79,24 +85,25 @@ bool may_have_levels(const Layer& layer) {
          !layer.holds.reflection;
 }
 
-int level_count(const LevelSet& levels, const Layer& layer) {
-  if (!may_have_levels(layer)) return 1;
+int level_count(const Scene& scene, const Layer& layer) {
+  if (!scene.levels || !may_have_levels(layer)) return 1;
   std::size_t most = 1;
   for (const int part : layer.parts)
-    most = std::max(most, levels.parts[static_cast<std::size_t>(part)].size());
+    most = std::max(most, scene.levels->parts[static_cast<std::size_t>(part)].size());
   return static_cast<int>(most);
 }
 
-LayerLevel level_of(const Scene& scene, const LevelSet& levels, const Layer& layer, int level,
+LayerLevel level_of(const Scene& scene, const Layer& layer, int level,
                     const std::vector<dmat4>& world_from_part) {
   LayerLevel result{layer.polygons, 0};
+  if (!scene.levels) return result;
   double joints = 0;  // the most that any joint stretches
   for (std::size_t i = layer.parts.size(); i < world_from_part.size(); ++i)
     joints = std::max(joints, largest_stretch(world_from_part[i]));
   for (std::size_t i = 0; i < layer.parts.size(); ++i) {
     const Part& part = scene.parts[static_cast<std::size_t>(layer.parts[i])];
     if (part.is_seam) continue;
-    const auto& ladder = levels.ladders[static_cast<std::size_t>(part.mesh)].levels;
+    const auto& ladder = scene.levels->ladders[static_cast<std::size_t>(part.mesh)].levels;
     if (ladder.empty()) continue;
     const LadderLevel& drawn = ladder[at_level(ladder.size(), level)];
     result.polygons -= ladder[0].triangles - drawn.triangles;
@@ -107,9 +114,10 @@ LayerLevel level_of(const Scene& scene, const LevelSet& levels, const Layer& lay
   return result;
 }
 
-Layer layer_at_level(const LevelSet& levels, Layer layer, int level) {
+Layer layer_at_level(const Scene& scene, Layer layer, int level) {
+  if (!scene.levels) return layer;
   for (int& part : layer.parts) {
-    const auto& ladder = levels.parts[static_cast<std::size_t>(part)];
+    const auto& ladder = scene.levels->parts[static_cast<std::size_t>(part)];
     part = ladder[at_level(ladder.size(), level)];
   }
   return layer;

@@ -24,15 +24,11 @@ struct LevelSet {
   std::vector<std::vector<int>> parts;  ///< by own part: itself, then those that stand for it, finest first
 };
 
-struct SceneWithLevels {
-  Scene scene;
-  LevelSet levels;
-};
-
-/// Cost: build_ladder for each mesh, and shared_edges once.
-SceneWithLevels with_levels(Scene scene, const LayerSet& set, LadderOptions options = {});
-/// The scene as it was before.
-Scene without_levels(Scene scene, const LevelSet& levels);
+/// The scene, which has none yet, with `levels`. Whoever changes its meshes or parts takes them away first, and makes them
+/// anew. Cost: build_ladder for each mesh, and shared_edges once.
+Scene with_levels(Scene scene, const LayerSet& set, LadderOptions options = {});
+/// The scene as it was before; also where it has none.
+Scene without_levels(Scene scene);
 
 /// Can the layer be drawn coarser? Not a shade layer, nor one that has shades or holds a mirrored picture: their pictures
 /// have to lie on each other.
@@ -40,7 +36,7 @@ bool may_have_levels(const Layer& layer);
 
 /// The most levels of any of its parts; 1: there is nothing coarser. At level k each part is drawn at its own level k, or
 /// at its coarsest.
-int level_count(const LevelSet& levels, const Layer& layer);
+int level_count(const Scene& scene, const Layer& layer);
 
 /// A layer at one level.
 struct LayerLevel {
@@ -48,10 +44,10 @@ struct LayerLevel {
   double error_m = 0;         ///< the largest of its parts, in the world: scaled as `world_from_part` say
 };
 /// `world_from_part`: of each part's node, joints of skinned ones behind (LayerState).
-LayerLevel level_of(const Scene& scene, const LevelSet& levels, const Layer& layer, int level,
+LayerLevel level_of(const Scene& scene, const Layer& layer, int level,
                     const std::vector<dmat4>& world_from_part);
 
 /// The layer with the parts of a level.
-Layer layer_at_level(const LevelSet& levels, Layer layer, int level);
+Layer layer_at_level(const Scene& scene, Layer layer, int level);
 
 }  // namespace talisman::layers

@@ -19,7 +19,6 @@ Settings own_settings(const Sequence& sequence) {
   settings.compression = sequence.compression;
   settings.visibility = sequence.visibility;
   settings.cells = sequence.cells;
-  settings.levels = sequence.levels;
   settings.fps = sequence.fps;
   settings.frames = sequence.frames;
   return settings;

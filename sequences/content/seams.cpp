@@ -59,9 +59,8 @@ Sequence with_seams_for(Sequence sequence, const Settings& settings) {
   if (sequence.content.seam.value_or(sequence.seam) != Seam::Auto) return sequence;
   sequence.content.geometric_px = settings.regulator.thresholds.geometric_px;
   sequence.content.display_px = settings.view.display_px;
-  const bool has_levels = sequence.levels != nullptr;
-  layers::Scene scene =
-      has_levels ? layers::without_levels(*sequence.scene, *sequence.levels) : *sequence.scene;
+  const bool has_levels = sequence.scene->levels != nullptr;
+  layers::Scene scene = layers::without_levels(*sequence.scene);
   remove_seams(scene, sequence.layer_specs);
   add_seams(scene, seam_options(sequence), sequence.layer_specs);
   sequence.layers = layers::factor(scene, sequence.layer_specs);

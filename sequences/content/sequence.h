@@ -20,8 +20,7 @@
 #include "sequences/pipeline/frame_order.h"
 
 namespace talisman::layers {
-struct CellSet;   // layers/cells.h
-struct LevelSet;  // layers/lod/levels.h
+struct CellSet;  // layers/cells.h
 }  // namespace talisman::layers
 
 namespace talisman::sequences {
@@ -73,14 +72,13 @@ struct Sequence {
   layers::PlacementOptions placement;
   std::optional<chunker::CompressionOptions> compression;  ///< empty: sprites are kept as they are
   std::optional<double> clip_margin;                       ///< View::clip_margin where the file sets it
-  regulator::RegulatorOptions regulator;           ///< defaults of the sequence; the command line overrides
-  std::string warp = "aff";                        ///< curve name
-  VisibilityOptions visibility;                    ///< which tests decide what is drawn at all
-  std::shared_ptr<const layers::CellSet> cells;    ///< null: none
-  std::shared_ptr<const layers::LevelSet> levels;  ///< of `scene`, which has their parts; null: not asked for
-  std::vector<std::string> warnings;               ///< missing textures and the like, one line each
-  std::vector<std::string> notes;                  ///< what was decided where the model leaves it open
-  ContentOptions content;                          ///< with which it was read
+  regulator::RegulatorOptions regulator;         ///< defaults of the sequence; the command line overrides
+  std::string warp = "aff";                      ///< curve name
+  VisibilityOptions visibility;                  ///< which tests decide what is drawn at all
+  std::shared_ptr<const layers::CellSet> cells;  ///< null: none
+  std::vector<std::string> warnings;             ///< missing textures and the like, one line each
+  std::vector<std::string> notes;                ///< what was decided where the model leaves it open
+  ContentOptions content;                        ///< with which it was read
 };
 
 /// Reads a sequence by name ("canyon", also "canyon/background" for a variant file

@@ -29,7 +29,6 @@
 
 namespace talisman::layers {
 struct CellSet;     // layers/cells.h
-struct LevelSet;    // layers/lod/levels.h
 class SceneMotion;  // layers/advance.h
 }  // namespace talisman::layers
 
@@ -67,8 +66,7 @@ struct Settings {
   /// M ≥ 1: a frame is the mean of M pictures over its time (sequences/pipeline/accumulate.h). 1: an instant. More
   /// are smoother motion blur, and cost what changes within a frame each time.
   int accumulate = 1;
-  std::shared_ptr<const layers::CellSet> cells;    ///< of the scene; null: it has none
-  std::shared_ptr<const layers::LevelSet> levels;  ///< of the scene's parts; null: there is nothing coarser
+  std::shared_ptr<const layers::CellSet> cells;  ///< of the scene; null: it has none
 };
 
 class Culling;  // sequences/pipeline/culling/culling.h

@@ -132,9 +132,8 @@ template <typename AnySettings, typename Visit>
 void for_each_setting(AnySettings& settings, const Visit& visit) {
   auto& [regulator, curve, own_warps, fit, view, bound, material_points, extents, placement, render,
          compression, explicit_order, cycles, compositor, fps, frames, budget_gap, late_chunks, visibility,
-         accumulate, cells, levels] = settings;
-  static_cast<void>(levels);  // likewise, and of the field lod
-  static_cast<void>(cells);   // content: its files are part of the identity
+         accumulate, cells] = settings;
+  static_cast<void>(cells);  // content: its files are part of the identity
   auto& [display, clip_margin] = view;
   visit("display_px", display);
   visit("clip_margin", clip_margin);

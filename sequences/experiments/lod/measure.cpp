@@ -113,15 +113,13 @@ FrameSpread frame_spread_of(const std::vector<double>& ms) {
   return spread;
 }
 
-LodExperiment measure_lod(const Sequence& given, const Settings& settings_given,
-                          const ExperimentFrames& frames, ProgressKind progress) {
+LodExperiment measure_lod(const Sequence& given, const Settings& settings, const ExperimentFrames& frames,
+                          ProgressKind progress) {
   Sequence sequence = given;
-  if (!sequence.levels) add_levels(sequence);
-  Settings settings = settings_given;
-  settings.levels = sequence.levels;
+  if (!sequence.scene->levels) add_levels(sequence);
   LodExperiment experiment{sequence.name, settings.view.display_px, frames, 1, {}, {}};
   for (const layers::Layer& layer : sequence.layers.layers)
-    experiment.levels = std::max(experiment.levels, layers::level_count(*sequence.levels, layer));
+    experiment.levels = std::max(experiment.levels, layers::level_count(*sequence.scene, layer));
   const chunker::PreparedScene prepared(*sequence.scene, settings.render);
   const std::map<int, Image8> truth = full_detail(sequence, settings, frames, prepared);
   const regulator::RegulatorOptions& base = settings.regulator;

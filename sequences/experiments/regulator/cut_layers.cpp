@@ -2,13 +2,18 @@
 #include "sequences/experiments/regulator/cut_layers.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "layers/glob.h"
+#include "layers/lod/levels.h"
 #include "layers/mesh_clusters.h"
+#include "layers/mesh_subset.h"
 #include "layers/shading.h"
+#include "sequences/content/levels.h"
 
 namespace talisman::sequences {
 
@@ -26,43 +31,12 @@ bool can_be_cut(const Sequence& sequence, const Layer& layer, int pieces) {
   return !has_shades && sequence.scene->meshes[part.mesh].triangle_count() >= 16 * pieces;
 }
 
-/// Its vertices stay all: which are used is for the triangles to say.
-Mesh with_triangles(const Mesh& mesh, const std::vector<int>& triangles) {
-  Mesh piece = mesh;
-  piece.indices.clear();
+/// Three indices for each of the triangles.
+std::vector<std::uint32_t> indices_of(const Mesh& mesh, const std::vector<int>& triangles) {
+  std::vector<std::uint32_t> indices;
   for (const int t : triangles)
-    piece.indices.insert(piece.indices.end(), mesh.indices.begin() + 3 * t, mesh.indices.begin() + 3 * t + 3);
-  return piece;
-}
-
-/// The same mesh without the vertices that no triangle names.
-template <typename T>
-void keep_used(const std::vector<int>& used, std::vector<T>& values) {
-  if (values.empty()) return;
-  std::vector<T> kept;
-  kept.reserve(used.size());
-  for (const int v : used) kept.push_back(values[v]);
-  values = std::move(kept);
-}
-
-Mesh compacted(Mesh mesh) {
-  std::vector<int> place(mesh.positions.size(), -1), used;
-  for (std::uint32_t& index : mesh.indices) {
-    if (place[index] < 0) {
-      place[index] = static_cast<int>(used.size());
-      used.push_back(static_cast<int>(index));
-    }
-    index = static_cast<std::uint32_t>(place[index]);
-  }
-  keep_used(used, mesh.positions);
-  keep_used(used, mesh.normals);
-  keep_used(used, mesh.uvs);
-  keep_used(used, mesh.emissive_uvs);
-  keep_used(used, mesh.normal_uvs);
-  keep_used(used, mesh.tangents);
-  keep_used(used, mesh.colors);
-  keep_used(used, mesh.alphas);
-  return mesh;
+    indices.insert(indices.end(), mesh.indices.begin() + 3 * t, mesh.indices.begin() + 3 * t + 3);
+  return indices;
 }
 
 void cut_layer(const Layer& layer, int pieces, layers::Scene& scene, Sequence& cut) {
@@ -75,7 +49,7 @@ void cut_layer(const Layer& layer, int pieces, layers::Scene& scene, Sequence& c
   layers::LayerSpec wishes = *spec;
   for (std::size_t k = 0; k < groups.size(); ++k) {
     const int mesh = static_cast<int>(scene.meshes.size());
-    scene.meshes.push_back(compacted(with_triangles(whole, groups[k])));
+    scene.meshes.push_back(layers::with_triangles(whole, indices_of(whole, groups[k])));
     if (k == 0) {
       scene.parts[layer.parts[0]].mesh = mesh;
       continue;
@@ -96,7 +70,7 @@ void cut_layer(const Layer& layer, int pieces, layers::Scene& scene, Sequence& c
 Sequence with_cut_layers(const Sequence& sequence, int pieces) {
   if (pieces < 2) return sequence;
   Sequence cut = sequence;
-  layers::Scene scene = *sequence.scene;
+  layers::Scene scene = layers::without_levels(*sequence.scene);
   for (layers::LayerSpec& spec : cut.layer_specs)  // whose globs would take the pieces, too
     for (const Layer& layer : sequence.layers.layers) {
       if (layer.name != spec.name || !can_be_cut(sequence, layer, pieces)) continue;
@@ -107,6 +81,7 @@ Sequence with_cut_layers(const Sequence& sequence, int pieces) {
   cut.layers = layers::factor(scene, cut.layer_specs);
   cut.scene = std::make_shared<const layers::Scene>(std::move(scene));
   cut.seam = Seam::Auto;
+  if (sequence.scene->levels) add_levels(cut);
   return cut;
 }
 

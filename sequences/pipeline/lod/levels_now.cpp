@@ -34,15 +34,6 @@ double focal_px(const LayerState& now) {
   return now.view.display_px.y / (2 * std::tan(now.camera.fov_y_rad / 2));
 }
 
-int count_of(const Pipeline& pipeline, const Layer& layer) {
-  return pipeline.settings.levels ? layers::level_count(*pipeline.settings.levels, layer) : 1;
-}
-
-layers::LayerLevel level_of(const Pipeline& pipeline, const Layer& layer, int level, const LayerState& now) {
-  if (!pipeline.settings.levels) return {layer.polygons, 0};
-  return layers::level_of(pipeline.scene, *pipeline.settings.levels, layer, level, now.world_from_part);
-}
-
 double error_px(const layers::LayerLevel& level, const LayerState& now) {
   return layers::level_error_px(level.error_m, now.nearest_w_m, focal_px(now), most_tangent(now));
 }
@@ -88,10 +79,10 @@ void assess_levels_of(const Pipeline& pipeline, PipelineState& state, int frame,
   const Layer& layer = state.layers[assessment.layer];
   const LayerState& now = captured_states(pipeline, state, frame)[layer.id];
   const bool optimises = options.lod.by == LodSelector::Optimise;
-  const int count = count_of(pipeline, layer);
+  const int count = layers::level_count(pipeline.scene, layer);
   if (count < 2 && !optimises) return;
   for (int k = 0; k < count; ++k) {
-    const layers::LayerLevel level = level_of(pipeline, layer, k, now);
+    const layers::LayerLevel level = layers::level_of(pipeline.scene, layer, k, now.world_from_part);
     LevelChoice way{k, 1, assessment.cost, k == 0 ? 0 : error_px(level, now)};
     way.cost.polygons = level.polygons;
     assessment.levels.push_back(way);
@@ -135,15 +126,14 @@ void place_at_level(const Pipeline& pipeline, PipelineState& state, int frame,
 }
 
 Layer drawn_layer(const Pipeline& pipeline, const Layer& layer, int level) {
-  if (level == 0 || !pipeline.settings.levels || !layers::may_have_levels(layer)) return layer;
-  return layers::layer_at_level(*pipeline.settings.levels, layer, level);
+  if (level == 0 || !layers::may_have_levels(layer)) return layer;
+  return layers::layer_at_level(pipeline.scene, layer, level);
 }
 
 void lower_cost(const Pipeline& pipeline, const PipelineState& state, int layer, int level,
                 regulator::LayerCost& cost) {
-  if (level == 0 || !pipeline.settings.levels) return;
-  cost.polygons =
-      layers::level_of(pipeline.scene, *pipeline.settings.levels, state.layers[layer], level, {}).polygons;
+  if (level == 0) return;
+  cost.polygons = layers::level_of(pipeline.scene, state.layers[layer], level, {}).polygons;
 }
 
 double planned_drawing_ms(const FrameReport& report) {

@@ -5,6 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "layers/lod/levels.h"
+#include "sequences/experiments/regulator/cut_layers.h"
 #include "sequences/experiments/regulator/setting_run.h"
 #include "sequences/experiments/regulator/stored_runs.h"
 #include "sequences/experiments/tuning/thresholds.h"
@@ -83,6 +85,37 @@ TEST_F(Seamed, OfAnotherDisplayAreThoseReadForThat) {
 TEST_F(Seamed, WithoutSeamsItIsTheVerySameScene) {
   const Sequence sequence = tests::moving_sequence(4);
   EXPECT_EQ(with_seams_for(sequence, at(sequence, 9)).scene, sequence.scene);
+}
+
+/// The levels of detail are of the scene that is planned: a piece of a cut layer has a ladder of its own.
+TEST_F(Seamed, LevelsAreThoseOfTheSceneWithItsSeamsAndCuts) {
+  const std::string ball =
+      "frames: 12\ndisplay: [128, 96]\nseam: auto\n"
+      "regulator: {policy: threshold, geometric_px: 1, lod: static, px_per_polygon: 8}\n"
+      "camera: {fov_deg: 50, near_m: 0.5, far_m: 200, flight: ["
+      "{t: 0, position: [0, 0, 30], target: [0, 0, 0]}, {t: 0.5, position: [0, 0, 5], target: [1, 0, -1]}]}\n"
+      "shapes:\n  - {id: ball, sphere: 2, segments: 64}\n  - {id: other, sphere: 1, position: [3, 0, 0]}\n";
+  const Sequence sequence = load_sequence(folder_.write("ball.yaml", ball));
+  const Sequence cut = with_seams_for(with_cut_layers(sequence, 4), at(sequence, 2));
+  ASSERT_NE(cut.scene->levels, nullptr);
+  EXPECT_EQ(cut.layers.layers.size(), 8u) << "both are cut in four";
+  const layers::Scene own = layers::without_levels(*cut.scene);
+  EXPECT_EQ(cut.scene->levels->parts.size(), own.parts.size());
+  EXPECT_EQ(cut.scene->levels->ladders.size(), own.meshes.size());
+  for (const layers::Layer& layer : cut.layers.layers) {
+    ASSERT_GT(layers::level_count(*cut.scene, layer), 1) << layer.name;
+    const layers::Layer coarse = layers::layer_at_level(*cut.scene, layer, 1);
+    EXPECT_TRUE(cut.scene->parts[coarse.parts[0]].is_level);
+    EXPECT_EQ(cut.scene->parts[coarse.parts[0]].name, cut.scene->parts[layer.parts[0]].name);
+  }
+  // Far away the coarser ones are drawn, and cost less.
+  Settings finest = at(sequence, 2);
+  finest.regulator.lod.by = regulator::LodSelector::None;
+  const auto polygons = [&](const Settings& settings) {
+    return planned(with_cut_layers(sequence, 4), settings, {0, 0}).polygons_rendered();
+  };
+  EXPECT_GT(polygons(at(sequence, 2)), 0);
+  EXPECT_LT(polygons(at(sequence, 2)), polygons(finest));
 }
 
 TEST_F(Seamed, RunBesideOthersCountsWhatItWouldAlone) {

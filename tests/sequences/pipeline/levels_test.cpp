@@ -64,7 +64,7 @@ std::vector<FrameReport> played(const std::string& regulator, bool draw = false)
 /// The levels of a ball: as many as simplification keeps in shape.
 int levels_of_a_ball() {
   const Sequence with = sequence_with("policy: threshold, lod: static");
-  return layers::level_count(*with.levels, with.layers.layers[0]);
+  return layers::level_count(*with.scene, with.layers.layers[0]);
 }
 
 std::string decisions_of(const FrameReport& report) {
@@ -77,18 +77,18 @@ std::string decisions_of(const FrameReport& report) {
 TEST(LevelsOfAScene, AreTakenByNoLayerAndGoAsTheyCame) {
   const Sequence plain = sequence_with("policy: threshold"),
                  with = sequence_with("policy: threshold, lod: static");
-  ASSERT_EQ(plain.levels, nullptr);
-  ASSERT_NE(with.levels, nullptr);
+  ASSERT_EQ(plain.scene->levels, nullptr);
+  ASSERT_NE(with.scene->levels, nullptr);
   EXPECT_EQ(with.layers.layers.size(), plain.layers.layers.size());
   EXPECT_EQ(with.layers.unassigned_parts, 0);
   EXPECT_EQ(with.scene->parts.size(),
             static_cast<std::size_t>(levels_of_a_ball()) * plain.scene->parts.size());
-  const layers::Scene back = layers::without_levels(*with.scene, *with.levels);
+  const layers::Scene back = layers::without_levels(*with.scene);
   EXPECT_EQ(back.parts.size(), plain.scene->parts.size());
   EXPECT_EQ(back.meshes.size(), plain.scene->meshes.size());
   const layers::Layer& ball = with.layers.layers[0];
   const std::vector<layers::LadderLevel>& ladder =
-      with.levels
+      with.scene->levels
           ->ladders[static_cast<std::size_t>(with.scene->parts[static_cast<std::size_t>(ball.parts[0])].mesh)]
           .levels;
   EXPECT_EQ(ladder.size(), static_cast<std::size_t>(levels_of_a_ball()));
@@ -96,7 +96,7 @@ TEST(LevelsOfAScene, AreTakenByNoLayerAndGoAsTheyCame) {
   for (std::size_t k = 1; k < ladder.size(); ++k) EXPECT_LE(2 * ladder[k].triangles, ladder[k - 1].triangles);
   EXPECT_EQ(layers::factor(*with.scene, with.layer_specs).layers[0].parts, ball.parts)
       << "also when factored again";
-  const layers::Layer coarse = layers::layer_at_level(*with.levels, ball, 99);
+  const layers::Layer coarse = layers::layer_at_level(*with.scene, ball, 99);
   EXPECT_TRUE(with.scene->parts[static_cast<std::size_t>(coarse.parts[0])].is_level);
 }
 
@@ -105,14 +105,14 @@ TEST(LevelsOfAScene, ErrorsAreThoseOfTheWorld) {
   const Sequence with = sequence_with("policy: threshold, lod: static");
   const layers::Layer& ball = with.layers.layers[0];
   const auto error_m = [&](const layers::dmat4& world) {
-    return layers::level_of(*with.scene, *with.levels, ball, 2, {world}).error_m;
+    return layers::level_of(*with.scene, ball, 2, {world}).error_m;
   };
   EXPECT_GT(error_m(layers::dmat4(1)), 0);
   EXPECT_DOUBLE_EQ(error_m(layers::dmat4(2)), 2 * error_m(layers::dmat4(1)));
   layers::dmat4 skewed(1);
   skewed[1][0] = 1;  // stretches by the golden ratio
   EXPECT_GE(error_m(skewed), 1.618 * error_m(layers::dmat4(1)));
-  EXPECT_EQ(layers::level_of(*with.scene, *with.levels, ball, 0, {layers::dmat4(1)}).error_m, 0);
+  EXPECT_EQ(layers::level_of(*with.scene, ball, 0, {layers::dmat4(1)}).error_m, 0);
 }
 
 TEST(Levels, ThatAreThereAndNotAskedForChangeNothing) {

@@ -32,8 +32,7 @@ constexpr int members_of() {
 
 /// Every type that is made of settings, and that the list therefore takes apart.
 constexpr int kSettings =
-    members_of<Settings>() -
-    8  // regulator, fit, view, extents, placement, render; cells, levels, which are content
+    members_of<Settings>() - 7  // regulator, fit, view, extents, placement, render; cells, which are content
     + members_of<regulator::RegulatorOptions>() -
     8  // thresholds, lookahead, budget, predictive, regroup, lod, latency, kalman
     + members_of<regulator::Thresholds>() + members_of<regulator::LookaheadOptions>() +
