@@ -75,6 +75,8 @@ int run_accuracy(const AccuracyOptions& options, std::ostream& out) {
     throw InputError("--warp-ms is about the last warp of --latency, must come with it");
   if ((options.of_sequence.memory_mb || options.of_sequence.io_mb_per_s) && options.memory.empty())
     throw InputError("--memory-mb and --io-mb-per-s are limits of --memory, must come with it");
+  if (options.of_sequence.no_report && options.regulator.empty())
+    throw InputError("--no-report is about the runs behind --regulator, must come with it");
   require_plotter();
   if (options.solvers) return run_solver_accuracy(options, out);
   if (options.hard)

@@ -43,7 +43,7 @@ RegulatorReport measure_regulator_report(const Sequence& sequence, const Experim
 
 int run_regulator_accuracy(const ExperimentOptions& options, const std::string& dir, std::ostream& out) {
   const ExperimentCommand<RegulatorReport> command{require_regulator_frames, measure_regulator_report,
-                                                   store_runs};
+                                                   options.no_report ? nullptr : store_runs};
   return run_experiment(command, options, dir, out);
 }
 

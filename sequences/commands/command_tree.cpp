@@ -377,6 +377,8 @@ void add_experiment_options(CLI::App& command, AccuracyOptions& options) {
                   std::to_string(kLargestDefault_px) + " in either direction; memory: 1280x1024)")
       .option("--quality-every", options.of_sequence.quality_every,
               "one frame of N is drawn and compared; 0: about 20 (regulator, factoring), 2 (renderer) in all")
+      .flag("--no-report", options.of_sequence.no_report,
+            "regulator: no page for each run that was measured; the points of its plots open nothing")
       .option("--out", options.out, "result folder", options.out)
       .option("--progress", options.progress, kProgressMeaning, options.progress);
 }

@@ -26,6 +26,7 @@ struct ExperimentOptions {
   int quality_every = 0;  ///< ≥ 1: one frame of so many is drawn and compared, cost in proportion to its
                           ///< inverse; 0: so that about kDefaultSamples are
   std::string progress = "auto";  ///< auto, bar, plain or none
+  bool no_report = false;         ///< of regulator alone: no page for each run that was measured
   double warp_ms = 0;             ///< of latency alone: age of the pose of the last warp, 0 … 1000
   // Of memory alone; empty: those of [Fu93].
   std::optional<double> memory_mb = {}, io_mb_per_s = {};  ///< ≥ 0
