@@ -2,51 +2,13 @@
 #include "chunker/plan_buffer.h"
 
 #include <algorithm>
-#include <cstring>
 
+#include <glm/common.hpp>
+
+#include "chunker/join_lanes.h"
 #include "layers/check.h"
 
 namespace talisman::chunker {
-
-namespace {
-
-constexpr int kTexels = kChunkSize * kChunkSize;
-
-// Each for the widest registers that this processor has; integers and comparisons alone, so that all have one result.
-// Sanitizers run before what chooses among them may.
-#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__) && !defined(__SANITIZE_ADDRESS__)
-#define TALISMAN_FOR_EACH_WIDTH __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define TALISMAN_FOR_EACH_WIDTH
-#endif
-
-struct OtherTexels {
-  const float* z;
-  const std::uint32_t* part;
-  const Texel* color;
-};
-
-/// Without a branch, over numbers of one width: the compiler makes vectors of it.
-TALISMAN_FOR_EACH_WIDTH void join_texels(const OtherTexels& other, float* __restrict__ z,
-                                         std::uint32_t* __restrict__ part, Texel* __restrict__ color) {
-  const float* __restrict__ other_z = other.z;
-  const std::uint32_t* __restrict__ other_part = other.part;
-  const Texel* __restrict__ other_color = other.color;
-  for (int i = 0; i < kTexels; ++i) {
-    const float a = z[i], b = other_z[i];
-    const std::uint32_t p = part[i], q = other_part[i];
-    std::uint32_t mine, theirs;
-    std::memcpy(&mine, &color[i], sizeof mine);
-    std::memcpy(&theirs, &other_color[i], sizeof theirs);
-    const bool take = (b > a) | ((b == a) & (q < p));
-    z[i] = take ? b : a;
-    part[i] = take ? q : p;
-    mine = take ? theirs : mine;
-    std::memcpy(static_cast<void*>(&color[i]), &mine, sizeof mine);
-  }
-}
-
-}  // namespace
 
 JoinCounters& JoinCounters::operator+=(const JoinCounters& o) {
   joins += o.joins;
@@ -59,8 +21,11 @@ JoinCounters& JoinCounters::operator+=(const JoinCounters& o) {
 
 void join_chunks(const Chunk& other_color, const DepthChunk& other_depth, Chunk& color, DepthChunk& depth) {
   static_assert(sizeof(Texel) == sizeof(std::uint32_t));
-  join_texels({other_depth.z.data(), other_depth.part.data(), other_color.texels}, depth.z.data(),
-              depth.part.data(), color.texels);
+  // Words of four bytes, as they lie in memory: gcc's own vectors, which these are loaded as, may alias anything.
+  join_lanes({other_depth.z.data(), other_depth.part.data(),
+              reinterpret_cast<const std::uint32_t*>(other_color.texels)},
+             {depth.z.data(), depth.part.data(), reinterpret_cast<std::uint32_t*>(color.texels)},
+             kChunkSize * kChunkSize);
 }
 
 PlanBuffer::PlanBuffer(layers::ivec2 size_px)
@@ -138,6 +103,22 @@ Sprite PlanBuffer::sprite() const {
     chunks.push_back(color_[reference_[place]]);
   }
   return Sprite::assemble(size_px_, places, chunks);
+}
+
+std::int64_t PlanBuffer::edge_texels() const {
+  std::int64_t count = 0;
+  for (int place = 0; place < static_cast<int>(reference_.size()); ++place) {
+    if (reference_[place] < 0) continue;
+    const layers::ivec2 first = kChunkSize * layers::ivec2(place % chunks_.x, place / chunks_.x),
+                        shown = glm::min(size_px_ - first, layers::ivec2(kChunkSize));
+    const Chunk& chunk = color_[reference_[place]];
+    for (int y = 0; y < shown.y; ++y)
+      for (int x = 0; x < shown.x; ++x) {
+        const Texel& texel = chunk.texels[y * kChunkSize + x];
+        count += texel.a != 0 && texel.a != 255;
+      }
+  }
+  return count;
 }
 
 std::int64_t PlanBuffer::bytes() const {

@@ -68,6 +68,7 @@ class PlanBuffer {
   const Chunk* color(int place) const;       ///< null where it is clear
   const DepthChunk* depth(int place) const;  ///< likewise
   Sprite sprite() const;                     ///< its colours
+  std::int64_t edge_texels() const;          ///< of the picture, covered in part
   std::int64_t bytes() const;                ///< of the chunks stored, and a reference for each
 
  private:

@@ -69,6 +69,36 @@ bool normalize(Column& column, double least) {
   return true;
 }
 
+/// PlacePairs of places, by coordinate.
+struct PlacePairs {
+  Column x, y, u, v;
+
+  /// False where a coordinate is too large for rounding to be small.
+  bool add(const dvec2& then, const dvec2& now) {
+    x.push_back(then.x);
+    y.push_back(then.y);
+    u.push_back(now.x);
+    v.push_back(now.y);
+    return std::max({std::abs(then.x), std::abs(then.y), std::abs(now.x), std::abs(now.y)}) < kLargest_px;
+  }
+
+  double floor_px() {
+    if (x.size() < 4) return 0;
+    for (Column* column : {&x, &y, &u, &v}) centre(*column);
+    if (dot(y, y) > dot(x, x)) std::swap(x, y);
+    if (!normalize(x, kRounding_px)) return 0;
+    const double across = std::sqrt(dot(y, y));
+    remove(x, y);
+    if (!normalize(y, std::max(kLeastAcross * across, kRounding_px))) return 0;
+    for (Column* column : {&u, &v}) {
+      remove(x, *column);
+      remove(y, *column);
+    }
+    const double rms = std::sqrt((dot(u, u) + dot(v, v)) / static_cast<double>(x.size()));
+    return std::max(0.0, rms * (1 - 1e-6) - kRounding_px);
+  }
+};
+
 }  // namespace
 
 double affine_floor_px(const layers::LayerState& then, const layers::LayerState& now,
@@ -76,31 +106,22 @@ double affine_floor_px(const layers::LayerState& then, const layers::LayerState&
   const std::size_t points = now.clip_points.size();
   if (points != then.clip_points.size()) return 0;
   const auto is_corner = corners_of(hull, points);
-  Column x, y, u, v;
+  PlacePairs pairs;
   for (std::size_t i = 0; i < points; ++i) {
     if (!is_corner[i] || !is_matched(now, now.clip_points[i], 1) || !is_matched(then, then.clip_points[i], 2))
       continue;
-    const dvec2 p = layers::screen_from_clip(then.clip_points[i], then.view.display_px);
-    const dvec2 q = layers::screen_from_clip(now.clip_points[i], now.view.display_px);
-    if (!(std::max({std::abs(p.x), std::abs(p.y), std::abs(q.x), std::abs(q.y)}) < kLargest_px)) return 0;
-    x.push_back(p.x);
-    y.push_back(p.y);
-    u.push_back(q.x);
-    v.push_back(q.y);
+    if (!pairs.add(layers::screen_from_clip(then.clip_points[i], then.view.display_px),
+                   layers::screen_from_clip(now.clip_points[i], now.view.display_px)))
+      return 0;
   }
-  if (x.size() < 4) return 0;
-  for (Column* column : {&x, &y, &u, &v}) centre(*column);
-  if (dot(y, y) > dot(x, x)) std::swap(x, y);
-  if (!normalize(x, kRounding_px)) return 0;
-  const double across = std::sqrt(dot(y, y));
-  remove(x, y);
-  if (!normalize(y, std::max(kLeastAcross * across, kRounding_px))) return 0;
-  for (Column* column : {&u, &v}) {
-    remove(x, *column);
-    remove(y, *column);
-  }
-  const double rms = std::sqrt((dot(u, u) + dot(v, v)) / static_cast<double>(x.size()));
-  return std::max(0.0, rms * (1 - 1e-6) - kRounding_px);
+  return pairs.floor_px();
+}
+
+double affine_floor_px(const layers::Correspondences& matched) {
+  PlacePairs pairs;
+  for (std::size_t i = 0; i < matched.then_px.size(); ++i)
+    if (!pairs.add(matched.then_px[i], matched.now_px[i])) return 0;
+  return pairs.floor_px();
 }
 
 }  // namespace talisman::fiducials

@@ -22,4 +22,8 @@ namespace talisman::fiducials {
 double affine_floor_px(const layers::LayerState& then, const layers::LayerState& now,
                        const layers::Polyhedron& hull);
 
+/// The same of all points that are matched, places where edges leave the display among them: of what the eye flies
+/// over, hardly a corner is matched for certain. Cost: the same, and `matched`, some µs.
+double affine_floor_px(const layers::Correspondences& matched);
+
 }  // namespace talisman::fiducials

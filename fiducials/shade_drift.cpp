@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -74,24 +75,31 @@ class Projector {
   layers::ViewHalfSpaces view_;
 };
 
-void include(ShadeMotion& worst, double px, dvec2 where_px, int trace) {
-  if (!(px > worst.px)) return;
-  worst.px = px;
-  worst.where_px = where_px;
-  worst.trace = trace;
+/// The worst of what is included; `enough` where that is beyond a limit, and no more is asked for.
+struct Worst {
+  double enough_px = std::numeric_limits<double>::infinity();
+  ShadeMotion motion;
+  bool enough() const { return motion.px > enough_px; }
+};
+
+void include(Worst& worst, double px, dvec2 where_px, int trace) {
+  if (!(px > worst.motion.px)) return;
+  worst.motion.px = px;
+  worst.motion.where_px = where_px;
+  worst.motion.trace = trace;
 }
 
 /// A place that is known in one state only crosses all that is seen.
-void include_crossing(const LayerState& now, int trace, ShadeMotion& worst) {
+void include_crossing(const LayerState& now, int trace, Worst& worst) {
   const layers::RectD seen = seen_part(now);
   include(worst, std::hypot(seen.width(), seen.height()), (seen.lo + seen.hi) / 2.0, trace);
 }
 
 void add_trace(const Projector& projector, const LayerState& now, const ShadeTrace& then_trace,
-               const ShadeTrace& now_trace, int index, ShadeMotion& worst) {
+               const ShadeTrace& now_trace, int index, Worst& worst) {
   if (!then_trace.on_receiver && !now_trace.on_receiver) return;
   const std::size_t count = std::min(then_trace.places.size(), now_trace.places.size());
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < count && !worst.enough(); ++i) {
     const dvec3 &from = then_trace.places[i], &to = now_trace.places[i];
     const bool was = exists(from), is = exists(to);
     if (was && is) {
@@ -104,26 +112,41 @@ void add_trace(const Projector& projector, const LayerState& now, const ShadeTra
   }
 }
 
+/// Is there anything that could run over the surface, and would be seen?
+bool may_run(const LayerState& then, const LayerState& now) {
+  return kAnyTrace && now.touches_display && !(then.traces.empty() && now.traces.empty());
+}
+
+void add_traces(const LayerState& then, const LayerState& now, Worst& worst) {
+  const Projector projector(now);
+  for (std::size_t i = 0; i < std::min(then.traces.size(), now.traces.size()) && !worst.enough(); ++i)
+    add_trace(projector, now, then.traces[i], now.traces[i], static_cast<int>(i), worst);
+  if (then.traces.size() != now.traces.size())  // the receiver, or what it stands in, was not finite
+    include_crossing(now, -1, worst);
+}
+
 }  // namespace
 
 ShadeMotion shade_motion(const LayerState& then, const LayerState& now) {
-  ShadeMotion motion;
-  if (!kAnyTrace || (then.traces.empty() && now.traces.empty())) {
-    motion.why_not = "no shadow, highlight or reflection in it moves by itself";
-    return motion;
-  }
-  if (!now.touches_display) {
-    motion.why_not = "out of view";
+  Worst worst;
+  ShadeMotion& motion = worst.motion;
+  if (!may_run(then, now)) {
+    motion.why_not = kAnyTrace && !(then.traces.empty() && now.traces.empty())
+                         ? "out of view"
+                         : "no shadow, highlight or reflection in it moves by itself";
     return motion;
   }
   motion.computed = true;
-  const Projector projector(now);
-  for (std::size_t i = 0; i < std::min(then.traces.size(), now.traces.size()); ++i)
-    add_trace(projector, now, then.traces[i], now.traces[i], static_cast<int>(i), motion);
-  if (then.traces.size() != now.traces.size())  // the receiver, or what it stands in, was not finite
-    include_crossing(now, -1, motion);
+  add_traces(then, now, worst);
   motion.where_px = glm::clamp(motion.where_px, dvec2(0), dvec2(now.view.display_px));
   return motion;
+}
+
+bool shade_runs_beyond(const LayerState& then, const LayerState& now, double limit_px) {
+  if (!may_run(then, now)) return false;
+  Worst worst{limit_px, {}};
+  add_traces(then, now, worst);
+  return worst.enough();
 }
 
 std::string_view name(ShadeTrace::Kind kind) {

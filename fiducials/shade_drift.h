@@ -22,6 +22,9 @@ namespace talisman::fiducials {
 /// Cost: nothing without traces; else O(places), some 30 ns each.
 ShadeMotion shade_motion(const layers::LayerState& then, const layers::LayerState& now);
 
+/// Is M beyond `limit_px` ≥ 0? Asked of the places one by one, up to the first that says so: mostly of one.
+bool shade_runs_beyond(const layers::LayerState& then, const layers::LayerState& now, double limit_px);
+
 std::string_view name(layers::ShadeTrace::Kind kind);  ///< "shadow", "highlight", "reflection"
 
 }  // namespace talisman::fiducials

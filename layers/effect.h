@@ -41,6 +41,7 @@ enum class Effect {
   LightFalloff,     ///< some light fades with distance
   NormalMap,        ///< some lit part has a normal texture and tangents
   MovingPicture,    ///< some drawn part shows an image sequence or a video
+  Predictive,       ///< the run's policy: words of motion, and buffers with depth that are joined
 };
 inline constexpr std::array kAllEffects = {
     Effect::Texture,           Effect::MipFilter,      Effect::Lighting,        Effect::SpecularHighlight,
@@ -48,7 +49,7 @@ inline constexpr std::array kAllEffects = {
     Effect::SpriteCompression, Effect::VisibilitySort, Effect::ColorWarp,       Effect::ShadowMap,
     Effect::ShadowLayer,       Effect::SpecularLayer,  Effect::ReflectionMap,   Effect::ReflectionLayer,
     Effect::TextureLayers,     Effect::EmissiveMap,    Effect::Morphing,        Effect::LightFalloff,
-    Effect::NormalMap,         Effect::MovingPicture};
+    Effect::NormalMap,         Effect::MovingPicture,  Effect::Predictive};
 
 /// In the order of kAllEffects.
 inline constexpr std::array<std::string_view, kAllEffects.size()> kEffectNames = {
@@ -56,7 +57,7 @@ inline constexpr std::array<std::string_view, kAllEffects.size()> kEffectNames =
     "skinning",         "layer_resolution", "motion_blur",  "sprite_compression", "visibility_sort",
     "color_warp",       "shadow_map",       "shadow_layer", "specular_layer",     "reflection_map",
     "reflection_layer", "texture_layers",   "emissive_map", "morphing",           "light_falloff",
-    "normal_map",       "moving_picture"};
+    "normal_map",       "moving_picture",   "predictive"};
 
 /// "texture", "mip_filter", …
 constexpr std::string_view name(Effect effect) { return kEffectNames[static_cast<std::size_t>(effect)]; }

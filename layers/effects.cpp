@@ -172,6 +172,13 @@ bool run_allows(const RunEffects& run, Effect effect) {
   return effect == Effect::MipFilter ? run.mip_filter : effect == Effect::NormalMap ? run.per_pixel : true;
 }
 
+/// Asked for by the run alone.
+std::string call_of(const RunEffects& run, Effect effect) {
+  if (effect == Effect::Predictive) return run.predictive ? "the run's policy is predictive" : "";
+  return run.compression_quality ? "the run asks for quality " + std::to_string(*run.compression_quality)
+                                 : "";
+}
+
 std::string call_of(const Context& context, const Layer& layer, Effect effect) {
   const Scene& scene = context.scene;
   if (!run_allows(context.run, effect)) return {};
@@ -182,9 +189,8 @@ std::string call_of(const Context& context, const Layer& layer, Effect effect) {
     case Effect::MotionBlur:
       return layer.preferences.motion_blur > 0 ? quoted("layer", layer.name) + " has motion_blur > 0" : "";
     case Effect::SpriteCompression:
-      return context.run.compression_quality
-                 ? "the run asks for quality " + std::to_string(*context.run.compression_quality)
-                 : "";
+    case Effect::Predictive:
+      return call_of(context.run, effect);
     case Effect::VisibilitySort:
       return call_of_visibility_sort(context.layers, layer);
     case Effect::ColorWarp:
@@ -270,12 +276,11 @@ std::string why_no_shade_layer(const Scene& scene, std::span<const Layer> layers
 }
 
 std::string why_not(const Scene& scene, std::span<const Layer> layers, const RunEffects& run, Effect effect) {
+  constexpr const char* kNotAsked = "the run does not ask for it";
   switch (effect) {
-    case Effect::MipFilter:
-      if (!run.mip_filter) return "the run does not ask for it";
-      [[fallthrough]];
     case Effect::Texture:
-      return "no material has a texture";
+    case Effect::MipFilter:
+      return effect == Effect::Texture || run.mip_filter ? "no material has a texture" : kNotAsked;
     case Effect::Lighting:
       return has_lights(scene) ? "no material is lit" : "the scene has no light";
     case Effect::SpecularHighlight:
@@ -300,7 +305,8 @@ std::string why_not(const Scene& scene, std::span<const Layer> layers, const Run
     case Effect::MotionBlur:
       return "no layer has motion_blur > 0";
     case Effect::SpriteCompression:
-      return "the run does not ask for it";
+    case Effect::Predictive:
+      return kNotAsked;
     case Effect::VisibilitySort:
       return "no two layers are in one group";
     case Effect::ColorWarp:

@@ -29,6 +29,7 @@ struct RunEffects {
   std::optional<int> compression_quality;  ///< empty: sprites are kept as they are
   bool mip_filter = true;                  ///< false: the run looks textures up in their finest level only
   bool per_pixel = true;      ///< false: surfaces are shaded flat or at vertices, and have no normal maps
+  bool predictive = false;    ///< the run joins buffers with depth, and has no sprites
   bool follows_light = true;  ///< false: neither a colour warp nor a fiducial of the light is asked for
 };
 

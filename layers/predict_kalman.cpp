@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "layers/predict_kalman.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <utility>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>
@@ -16,18 +18,63 @@
 namespace talisman::layers {
 namespace {
 
+/// How (place, velocity, acceleration) goes on over a time, and the covariance that noise of density 1 adds.
+struct Course {
+  dmat3 step{1.0}, noise{0.0};
+};
+
+Course lasting(double h) {
+  const double h2 = h * h, h3 = h2 * h, h4 = h3 * h, h5 = h4 * h;
+  return {dmat3{{1, 0, 0}, {h, 1, 0}, {h * h / 2, h, 1}},  // columns
+          dmat3{{h5 / 20, h4 / 8, h3 / 6}, {h4 / 8, h3 / 3, h2 / 2}, {h3 / 6, h2 / 2, h}}};
+}
+
+/// exp(s M) for a time in which little decays: the next term is below rounding.
+dmat3 short_step(const dmat3& rates, double s) {
+  constexpr int kTerms = 9;
+  dmat3 sum(1.0), term(1.0);
+  for (int k = 1; k <= kTerms; ++k) {
+    term = rates * term * (s / k);
+    sum += term;
+  }
+  return sum;
+}
+
+/// Of rates per second at which velocity and acceleration die away, not both 0.
+Course dying(double h, double velocity, double acceleration) {
+  constexpr double kMost = 1.0 / 64;  // of either, in the time that is doubled
+  const int doublings = std::max(0, std::ilogb(h * std::max(velocity, acceleration) / kMost) + 1);
+  const double first = std::ldexp(h, -doublings);
+  const dmat3 rates{{0, 0, 0}, {1, -velocity, 0}, {0, 1, -acceleration}};
+  Course course{short_step(rates, first), dmat3(0.0)};
+  constexpr double kNode = 0.7745966692414834;  // √(3/5): Gauss and Legendre, three nodes
+  for (const auto& [node, weight] : {std::pair{-kNode, 5.0 / 18}, {0.0, 8.0 / 18}, {kNode, 5.0 / 18}}) {
+    const dvec3 g = short_step(rates, first * (1 + node) / 2)[2];
+    course.noise += glm::outerProduct(g, g) * (weight * first);
+  }
+  for (int k = 0; k < doublings; ++k) {
+    course.noise += course.step * course.noise * glm::transpose(course.step);
+    course.step = course.step * course.step;
+  }
+  return course;
+}
+
+Course course_over(double h, const KalmanNoise& noise) {
+  if (noise.coast_s == 0 && noise.push_s == 0) return lasting(h);
+  const auto rate = [](double lasts_s) { return lasts_s > 0 ? 1 / lasts_s : 0; };
+  return dying(h, rate(noise.coast_s), rate(noise.push_s));
+}
+
 /// One coordinate: place, velocity, acceleration.
 class AxisFilter {
  public:
-  AxisFilter(double first, double measured, double jerk)
-      : q_(jerk * jerk), r_(measured * measured), x_(first, 0, 0) {
+  AxisFilter(double first, double measured) : r_(measured * measured), x_(first, 0, 0) {
     p_[0][0] = r_, p_[1][1] = 1e4, p_[2][2] = 1e6;  // nothing is known of how it moves
   }
 
-  void pass(double h) {
-    const dmat3 f{{1, 0, 0}, {h, 1, 0}, {h * h / 2, h, 1}};  // columns
-    x_ = f * x_;
-    p_ = f * p_ * glm::transpose(f) + process(h);
+  void pass(const dmat3& step, const dmat3& noise) {
+    x_ = step * x_;
+    p_ = step * p_ * glm::transpose(step) + noise;
   }
   void measure(double z) {
     const dvec3 k = p_[0] / (p_[0][0] + r_);
@@ -35,15 +82,10 @@ class AxisFilter {
     const dvec3 row = {p_[0][0], p_[1][0], p_[2][0]};
     for (int column = 0; column < 3; ++column) p_[column] -= k * row[column];
   }
-  double ahead(double h) const { return x_.x + h * x_.y + h * h / 2 * x_.z; }
+  double ahead(const dmat3& step) const { return x_.x * step[0][0] + step[1][0] * x_.y + step[2][0] * x_.z; }
 
  private:
-  dmat3 process(double h) const {
-    const double h2 = h * h, h3 = h2 * h, h4 = h3 * h, h5 = h4 * h;
-    return q_ * dmat3{{h5 / 20, h4 / 8, h3 / 6}, {h4 / 8, h3 / 3, h2 / 2}, {h3 / 6, h2 / 2, h}};
-  }
-
-  double q_, r_;
+  double r_;
   dvec3 x_;
   dmat3 p_{0.0};
 };
@@ -51,19 +93,25 @@ class AxisFilter {
 /// Coordinates of the past; empty where nothing was measured.
 using Measured = std::vector<std::optional<dvec3>>;
 
-dvec3 filtered(const Measured& values, double step_s, double horizon_s, double measured, double jerk) {
+/// From one pose to the next, and from the last one to what is asked for.
+struct Courses {
+  Course between, ahead;
+};
+
+dvec3 filtered(const Measured& values, const Courses& courses, double measured, double jerk) {
   dvec3 ahead{0};
+  const dmat3 noise = jerk * jerk * courses.between.noise;
   for (int axis = 0; axis < 3; ++axis) {
     std::optional<AxisFilter> filter;
     for (const std::optional<dvec3>& value : values) {
-      if (filter) filter->pass(step_s);
+      if (filter) filter->pass(courses.between.step, noise);
       if (!value) continue;
       if (filter)
         filter->measure((*value)[axis]);
       else
-        filter.emplace((*value)[axis], measured, jerk);
+        filter.emplace((*value)[axis], measured);
     }
-    ahead[axis] = filter->ahead(horizon_s);  // the last pose is measured
+    ahead[axis] = filter->ahead(courses.ahead.step);  // the last pose is measured
   }
   return ahead;
 }
@@ -105,8 +153,9 @@ dmat4 predict_kalman(std::span<const dmat4> past, double step_s, double horizon_
     turn_after = nearest_way(rotation_vector(then->rotation * glm::transpose(now->rotation)), turn_after);
     turns[k] = turn_after;
   }
-  const dvec3 turn = filtered(turns, step_s, horizon_s, noise.turn_rad, noise.jerk_rad);
-  const dvec3 way = filtered(places, step_s, horizon_s, noise.place_m, noise.jerk_m);
+  const dvec3 turn = filtered(turns, {course_over(step_s, noise), course_over(horizon_s, noise)},
+                              noise.turn_rad, noise.jerk_rad);
+  const dvec3 way = filtered(places, {lasting(step_s), lasting(horizon_s)}, noise.place_m, noise.jerk_m);
   dmat4 predicted(exp_of(turn) * dmat3(last));
   predicted[3] = dvec4(now->origin + way, 1);
   return is_finite(predicted) ? predicted : last;

@@ -8,6 +8,11 @@
 ///   x' = F x, P' = F P Fᵀ + Q          F = [1 h h²/2; 0 1 h; 0 0 1],  Q = q² ∫ g gᵀ ds, g = (s²/2, s, 1) over 0 … h
 ///   k  = P' e / (P'₀₀ + r²),  x = x' + k (z − x'₀),  P = (1 − k eᵀ) P'
 ///   x(H) = x₀ + H x₁ + H²/2 x₂
+/// Heads that turn stop, bodies that walk go on. With a time that a turn's velocity lasts, C, and one that its acceleration does, A
+/// (Singer, 1970), it dies away when left alone, and no horizon carries it far:
+///   ẋ₁ = x₂ − x₁/C,  ẋ₂ = −x₂/A + noise;   F(h) = exp(h M), Q(h) = q² ∫ g gᵀ ds, g = F(s) e₂,  x(H) = (F(H) x)₀
+/// with M the matrix of these rates; A much below h is a velocity that is pushed by white noise. F and Q of a time by doubling from
+/// one in which less than 1/64 decays: F(2h) = F(h)², Q(2h) = Q(h) + F(h) Q(h) F(h)ᵀ.
 /// A rotation R of the past is z = log(R Rₙ⁻¹), Rₙ the last one known: small, so that its components are coordinates; of the
 /// ways round that are the same rotation the one next to that of the pose after it. The predicted rotation is exp(z(H)) Rₙ.
 /// Places are told from the last one, so that a filter far from the origin is not one of rounding.
@@ -28,6 +33,8 @@ struct KalmanNoise {
   double jerk_m =
       50;  ///< > 0; m s⁻³ √s: root of the density of the change of acceleration; more follows sooner
   double jerk_rad = 300;  ///< > 0; rad s⁻³ √s; likewise
+  double coast_s = 0;     ///< C: in which the velocity of a turn falls to 1/e; less expects less; 0: it lasts
+  double push_s = 0;      ///< A: its acceleration, likewise; jerks count for as long
   bool operator==(const KalmanNoise&) const = default;
 };
 

@@ -186,6 +186,10 @@ std::string first_defect(const layers::KalmanNoise& noise) {
   if (!is_usable(noise.turn_rad)) return broken("kalman_turn_rad", noise.turn_rad, rule);
   if (!is_usable(noise.jerk_m)) return broken("kalman_jerk_m", noise.jerk_m, rule);
   if (!is_usable(noise.jerk_rad)) return broken("kalman_jerk_rad", noise.jerk_rad, rule);
+  const auto lasts = [](double value_s) { return value_s == 0 || (value_s >= 1e-6 && value_s <= 1e6); };
+  if (!lasts(noise.coast_s))
+    return broken("kalman_coast_s", noise.coast_s, "0 (for ever), or from 1e-6 to 1e6");
+  if (!lasts(noise.push_s)) return broken("kalman_push_s", noise.push_s, "0 (for ever), or from 1e-6 to 1e6");
   return {};
 }
 

@@ -45,7 +45,7 @@ struct FrameRun {
 /// earliest instant from `frame` on, then to the latest before it. If no instant serves `frame`, the run is
 /// empty and its instant -1. Cost: an instant that does not serve `frame`, or the frame that it must reach to
 /// win, is dismissed with one or two calls of `serves`; an instant that wins costs one call per frame of its
-/// run.
+/// run. That at `frame` is asked first, then the last one that it serves, which wins mostly: few others do after it.
 FrameRun longest_run(int frame, Instants instants, int last, const Serves& serves);
 
 /// The same for motion known `lookahead` ≥ 0 frames ahead: instants frame … frame + lookahead, not beyond

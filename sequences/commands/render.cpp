@@ -37,6 +37,19 @@ void say_capped_sprites(const Summary& summary, int max_sprite_px) {
       max_sprite_px, is_one ? "has" : "have");
 }
 
+/// Pixels at edges of which a join knows one depth: policy predictive with more than one sample for each.
+void say_edges(const Summary& summary, int samples) {
+  const double shown =
+                   static_cast<double>(summary.display_px.x) * summary.display_px.y * summary.frame_count(),
+               edges = static_cast<double>(summary.sums().edge_pixels());
+  if (!(edges > 0)) return;
+  std::fprintf(
+      stderr,
+      "warning: %.2f %% of the pixels shown are covered in part, and may be too dark where one buffer lies "
+      "over another: a join by depth knows one depth of each; --samples is %d, with 1 nothing is lost\n",
+      100 * edges / shown, samples);
+}
+
 void say(const std::vector<std::string>& warnings) {
   for (const std::string& warning : warnings) std::fprintf(stderr, "warning: %s\n", warning.c_str());
 }
@@ -97,6 +110,7 @@ int run_sequence(const CommandLine& line, bool plan_only, const std::atomic<bool
   const RunOutcome outcome = run(sequence, resolved.settings, resolved.options, stop);
   write_page(sequence, resolved, outcome, line);
   say_capped_sprites(outcome.summary, resolved.settings.placement.max_sprite_px);
+  say_edges(outcome.summary, resolved.settings.render.samples);
   if (!outcome.complete) {
     std::fprintf(stderr, "error: stopped after %d frames%s\n", outcome.summary.frame_count(),
                  continuation(resolved.options));

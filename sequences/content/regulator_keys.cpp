@@ -101,7 +101,12 @@ Table<KalmanNoise> kalman_keys() {
       .key("kalman_jerk_m", &K::jerk_m, number(kNoise), "m s⁻³ √s",
            "prediction kalman: how much the acceleration changes, root of its density; more follows sooner")
       .key("kalman_jerk_rad", &K::jerk_rad, number(kNoise), "rad s⁻³ √s",
-           "prediction kalman: of the turning, likewise");
+           "prediction kalman: of the turning, likewise")
+      .key("kalman_coast_s", &K::coast_s, number({0, 1e6}), "s",
+           "prediction kalman: in what time the velocity of a turn falls to 1/e when left alone; 0: it lasts")
+      .key("kalman_push_s", &K::push_s, number({0, 1e6}), "s",
+           "prediction kalman: its acceleration, likewise; much less than a frame: it is pushed by white "
+           "noise");
 }
 
 Table<PredictiveOptions> predictive_keys() {

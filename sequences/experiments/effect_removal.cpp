@@ -374,6 +374,9 @@ void remove_request(Variant& variant, Effect effect) {
       variant.sequence.compression.reset();
       variant.settings.compression.reset();
       return;
+    case Effect::Predictive:
+      variant.sequence.regulator.policy = variant.settings.regulator.policy = regulator::Policy::Threshold;
+      return;
     case Effect::VisibilitySort:
       return order_by_groups(variant);
     case Effect::ColorWarp:

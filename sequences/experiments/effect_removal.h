@@ -21,6 +21,7 @@
 ///   layer_resolution    all sprites, also of shade layers, at the display's resolution
 ///   motion_blur         all shutters closed
 ///   sprite_compression  sprites are kept as they are
+///   predictive          policy threshold, with the same thresholds
 ///   visibility_sort     each layer has a group of its own, in the order of the first frame: no sort, no pair
 ///                       of the author, no merging. Layers that are out of view then come last of their
 ///                       group, in the author's order

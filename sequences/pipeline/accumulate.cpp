@@ -68,6 +68,7 @@ void add(const PredictiveReport& report, PredictiveReport& sum) {
   sum.surprises += report.surprises;
   sum.surprised += report.surprised;
   sum.buffer_bytes = std::max(sum.buffer_bytes, report.buffer_bytes);
+  sum.edge_pixels += report.edge_pixels;
   sum.joined += report.joined;
 }
 
@@ -93,6 +94,7 @@ void in_frames(int frame, int pictures, FrameReport& report) {
   report.frame = report.plan.frame = frame;
   if (report.predictive) {
     report.predictive->slice_first /= pictures;
+    report.predictive->edge_pixels /= pictures;
     report.predictive->slice_frames = std::max(report.predictive->slice_frames / pictures, 1);
   }
   for (LayerDecision& decision : report.plan.decisions) {

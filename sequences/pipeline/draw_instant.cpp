@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "fiducials/place_floor.h"
+#include "fiducials/shade_drift.h"
 #include "layers/check.h"
 #include "layers/rest.h"
 #include "regulator/policies.h"
@@ -24,7 +25,9 @@ class Judge {
         state_(state),
         layer_(layer),
         frame_rendered_(frame_rendered),
-        limit_px_(most_px(pipeline, state.layers[layer])) {
+        limit_px_(pipeline.settings.regulator.thresholds.geometric_px /
+                  state.layers[layer].preferences.importance.geometric),
+        is_affine_(warp::family_of(curve_of(pipeline, state.layers[layer])) != warp::Family::Perspective) {
     if (!predicts(pipeline) && !is_late(pipeline) && !pipeline.culling)
       rest_.emplace(pipeline.scene, state.layers[layer]);
   }
@@ -36,8 +39,7 @@ class Judge {
     if (!now.touches_display) return true;  // not shown
     const layers::LayerState& then = captured_states(pipeline_, state_, instant)[layer_];
     if (!then.touches_display) return false;  // nothing to draw
-    const layers::Polyhedron& hull = state_.layers.bound(layer_).hull;
-    if (limit_px_ < warp::kHugePx && fiducials::affine_floor_px(then, now, hull) > limit_px_) return false;
+    if (limit_px_ < warp::kHugePx && is_farther(then, now, frame - frame_rendered_)) return false;
     ++counts_.evaluated;
     const regulator::LayerAssessment assessment =
         assess_sprite(pipeline_, state_.layers, then, captured_placement(pipeline_, state_, layer_, instant),
@@ -48,16 +50,20 @@ class Judge {
   const LookaheadReport& counts() const { return counts_; }
 
  private:
-  /// The error of place beyond which a sprite is never shown; huge where its warps are not affine.
-  static double most_px(const Pipeline& pipeline, const layers::Layer& layer) {
-    if (warp::family_of(curve_of(pipeline, layer)) == warp::Family::Perspective) return warp::kHugePx;
-    return pipeline.settings.regulator.thresholds.geometric_px / layer.preferences.importance.geometric;
+  /// Is the sprite farther off than it may be, whatever its warp?
+  bool is_farther(const layers::LayerState& then, const layers::LayerState& now, int age_frames) const {
+    if (fiducials::shade_runs_beyond(then, now, limit_px_)) return true;
+    if (!is_affine_) return false;
+    const layers::Polyhedron& hull = state_.layers.bound(layer_).hull;
+    return fiducials::affine_floor_px(then, now, hull) > limit_px_ ||
+           fiducials::affine_floor_px(layers::correspond(then, now, hull, age_frames)) > limit_px_;
   }
 
   const Pipeline& pipeline_;
   PipelineState& state_;
   int layer_, frame_rendered_;
-  double limit_px_;
+  double limit_px_;  ///< error beyond which a sprite is never shown
+  bool is_affine_;   ///< are its warps affine or simpler?
   std::optional<layers::LayerRest> rest_;
   LookaheadReport counts_;
 };

@@ -21,11 +21,14 @@
 ///
 ///   serves       nothing that the layer's picture depends on moves from the one to the other (layers/rest.h): found
 ///                from the tracks, without either state
-///   serves not   its characteristic points are farther from any affine map of the old ones than the threshold
-///                allows (fiducials/place_floor.h); where the layer's warps are of the perspective family nothing is said
+///   serves not   its characteristic points, or all that are matched, are farther from any affine map of the old ones
+///                than the threshold allows (fiducials/place_floor.h); where the layer's warps are of the perspective
+///                family nothing is said.
+///                Or a place of a shadow, highlight or reflection has run farther over it than that, which no warp of the
+///                surface undoes (fiducials/shade_drift.h)
 ///
 /// So what rests costs nothing, as an interval that is dismissed in regulator/certified_words.h, and of what turns only the
-/// instants near enough are fitted. Light, sampling and edges have no such bound: they are evaluated.
+/// instants near enough are fitted. Colours, sampling and edges have no such bound: they are evaluated.
 
 #include "regulator/schedule.h"
 #include "sequences/pipeline/lookahead_report.h"

@@ -171,16 +171,10 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
   finish_shadow_maps(state, report);
 }
 
-/// The same without sprites. A surface is drawn with all terms of its shading, and looks up the maps of them all.
-void remember_predicted(const Pipeline& pipeline, PipelineState& state, const ShadowMapsNow& maps,
-                        FrameReport& report) {
-  plan_predicted(pipeline, state, report);
-  for (const Layer& layer : report.layers) {
-    const int surface = layer.base < 0 ? layer.id : layer.base;
-    if (report.plan.decisions[surface].action == Action::Rerender)
-      look_up_shadow_maps(pipeline, state, maps, layer.id, report.frame, report);
-  }
-  finish_shadow_maps(state, report);
+/// Are there buffers with depth instead of sprites?
+bool joins_buffers(const Pipeline& pipeline) {
+  return layers::is_built(layers::Effect::Predictive) &&
+         pipeline.settings.regulator.policy == regulator::Policy::Predictive;
 }
 
 /// The options of the regulator for this frame: what is measured is filled in.
@@ -391,7 +385,7 @@ void draw(const Pipeline& pipeline, PipelineState& state, const SceneFrame& now,
     result = std::move(picture.composite);
     report.render += picture.render;
     report.times.render_ms = render_watch.ms();
-  } else if (pipeline.settings.regulator.policy == regulator::Policy::Predictive) {
+  } else if (joins_buffers(pipeline)) {
     result = draw_predicted({pipeline, pipeline.authored, state.shadow_maps, prepared, now}, state, report);
     report.times.render_ms = render_watch.ms() - report.times.composite_ms;
   } else {
@@ -458,8 +452,8 @@ FrameReport step(const Pipeline& pipeline, PipelineState& state, int frame,
   if (pipeline.settings.budget_gap) report.budget_gap = gap_of(report, maps, options);
   bookkeeping_ms = plan_watch.ms() - bookkeeping_ms;
   if (measures_depth(pipeline)) measure_depth(pipeline, state, report);
-  if (options.policy == regulator::Policy::Predictive)
-    remember_predicted(pipeline, state, maps, report);
+  if (joins_buffers(pipeline))
+    plan_predicted(pipeline, state, maps, report);
   else
     remember_renders(pipeline, state, maps, report);
   if (regulator::regroups(options)) regroup(pipeline, state, report);

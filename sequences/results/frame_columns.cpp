@@ -248,7 +248,12 @@ FrameColumns frame_predictive() {
       stored<FrameLine>(
           "prediction_vertices", "predictive/vertices", "",
           "of prediction primitives, projected for the slice: in its first frame",
-          [](auto& l) -> auto& { return l.predictive->prediction_vertices; })};
+          [](auto& l) -> auto& { return l.predictive->prediction_vertices; }),
+      stored<FrameLine>(
+          "predictive_edge_pixels", "predictive/edge_pixels", "pixels",
+          "displayed and covered in part, when drawn with more than one sample: a join shows the background "
+          "through them where something is behind",
+          [](auto& l) -> auto& { return l.predictive->edge_pixels; })};
 }
 
 FrameColumns frame_lookahead() {
@@ -259,7 +264,7 @@ FrameColumns frame_lookahead() {
           [](auto& l) -> auto& { return l.lookahead->judged; }),
       stored<FrameLine>(
           "lookahead_evaluated", "lookahead/evaluated", "",
-          "of these, by fit and fiducials: neither rest nor a bound of the error of place was certain",
+          "of these, by fit and fiducials: neither rest nor a bound of the error was certain",
           [](auto& l) -> auto& { return l.lookahead->evaluated; })};
 }
 

@@ -103,7 +103,10 @@ void FrameTotals::add(const FrameLine& line) {
     lod_.upper_bound += line.lod->upper_bound;
   }
   if (line.upload_bytes) upload_bytes_ = upload_bytes_.value_or(0) + *line.upload_bytes;
-  if (line.predictive) surprises_ = surprises_.value_or(0) + line.predictive->surprises;
+  if (line.predictive) {
+    surprises_ = surprises_.value_or(0) + line.predictive->surprises;
+    edge_pixels_ += line.predictive->edge_pixels;
+  }
   if (line.lookahead) {
     if (!lookahead_) lookahead_.emplace();
     lookahead_->judged += line.lookahead->judged;

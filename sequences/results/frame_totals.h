@@ -69,6 +69,7 @@ class FrameTotals {
   const std::optional<std::int64_t>& upload_bytes() const { return upload_bytes_; }
   const std::optional<LookaheadReport>& lookahead() const { return lookahead_; }
   const std::optional<std::int64_t>& surprises() const { return surprises_; }  ///< of policy predictive
+  std::int64_t edge_pixels() const { return edge_pixels_; }  ///< likewise: partly covered ones
   const LatencyTotals& latency() const { return latency_; }
   /// Layers and chunks of all frames, the largest step. Empty where no chunks are drawn alone.
   const std::optional<RefreshReport>& refresh() const { return refresh_; }
@@ -92,6 +93,7 @@ class FrameTotals {
   std::optional<OpenSeams> open_seams_;
   std::optional<LookaheadReport> lookahead_;
   std::optional<std::int64_t> surprises_;
+  std::int64_t edge_pixels_ = 0;
   LatencyTotals latency_;
   std::optional<RefreshReport> refresh_;
   LodTotals lod_;

@@ -163,7 +163,10 @@ RunColumns run_motion_ahead() {
           [](const RunRow& r) { return r.sums.lookahead().value_or(LookaheadReport{}).evaluated; }),
       computed<RunRow>("predictive_surprises", "predictive/surprises", "",
                        "in which a plan was dropped, and the frame drawn whole",
-                       [](const RunRow& r) { return r.sums.surprises().value_or(0); })};
+                       [](const RunRow& r) { return r.sums.surprises().value_or(0); }),
+      computed<RunRow>("predictive_edge_pixels", "predictive/edge_pixels", "pixels",
+                       "of all frames, covered in part: a join may show them too dark",
+                       [](const RunRow& r) { return r.sums.edge_pixels(); })};
 }
 
 RunColumns run_budget_gap() {

@@ -80,11 +80,13 @@ void regulator(Options& options, const Visit& visit) {
   visit("latency_ms", render_ms);
   visit("latency_warp_ms", warp_ms);
   visit("latency_predict", latency_predict);
-  auto& [place_noise, turn_noise, jerk_m, jerk_rad] = kalman;
+  auto& [place_noise, turn_noise, jerk_m, jerk_rad, coast_s, push_s] = kalman;
   visit("kalman_place_m", place_noise);
   visit("kalman_turn_rad", turn_noise);
   visit("kalman_jerk_m", jerk_m);
   visit("kalman_jerk_rad", jerk_rad);
+  visit("kalman_coast_s", coast_s);
+  visit("kalman_push_s", push_s);
 }
 
 template <typename FitOptions, typename Visit>

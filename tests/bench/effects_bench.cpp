@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 
 /// What does an effect cost that a scene does not call for? One process of that measurement: a sequence that
-/// calls for every effect (tests/support/sequences.h), one effect taken away from it
+/// calls for every effect but a policy (tests/support/sequences.h), one effect taken away from it
 /// (sequences/experiments/effect_removal.h), is planned, drawn and composited on one thread. tests/bench/effect_builds
 /// runs it in the normal build and in one that was configured without the effect, and compares.
 ///

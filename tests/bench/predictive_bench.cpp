@@ -3,16 +3,24 @@
 //
 //   vertices   projected and compared with where they were: per vertex and frame; peer: perspectiveTransform,
 //              absdiff, and the largest difference
-//   joins      of two whole buffers of colour, depth and part; peers: compare and copyTo with its mask, of each of the
+//   joins      of two whole buffers of colour, depth and part: into one that is nearer everywhere, and into a fresh one, half
+//              of which is behind; peers: compare and copyTo with its mask, of each of the
 //              three; memcpy of the bytes that a join reads and writes
+//   kalman     the pose that 32 poses lead to; peer: cv::KalmanFilter, one for each of the six coordinates
+#include <cmath>
 #include <cstring>
 #include <random>
+#include <vector>
 
 #include <benchmark/benchmark.h>
 #include <glm/gtc/matrix_transform.hpp>
 #include <opencv2/core.hpp>
+#ifdef TALISMAN_OPENCV_VIDEO
+#include <opencv2/video/tracking.hpp>
+#endif
 
 #include "chunker/plan_buffer.h"
+#include "layers/predict_kalman.h"
 #include "regulator/projected_motion.h"
 
 namespace talisman {
@@ -134,27 +142,68 @@ void join_buffers(benchmark::State& state) {
 }
 BENCHMARK(join_buffers)->Args({300, 300})->Args({1344, 1024});
 
-void join_buffers_opencv(benchmark::State& state) {
-  const int width = static_cast<int>(state.range(0)), height = static_cast<int>(state.range(1));
-  cv::Mat z[2], color[2], part[2], mask;
-  for (int i = 0; i < 2; ++i) {
-    z[i].create(height, width, CV_32F);
-    color[i].create(height, width, CV_8UC4);
-    part[i].create(height, width, CV_32S);
-    cv::randu(z[i], 0, 1);
-    cv::randu(color[i], 0, 255);
-    cv::randu(part[i], 0, 7);
-  }
+/// What is joined into is as it was before each time.
+void join_fresh_buffers(benchmark::State& state) {
+  const layers::ivec2 size(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const Layered a(size, 1), b(size, 2);
+  chunker::PlanBuffer joined(size);
+  chunker::JoinCounters counters, copies;
   for (auto _ : state) {
+    state.PauseTiming();
+    joined.copy(a.buffer, copies);
+    state.ResumeTiming();
+    joined.join(b.buffer, counters);
+  }
+  state.SetItemsProcessed(counters.pixels_compared);
+  state.SetBytesProcessed(counters.pixels_compared * 3 * 12);
+}
+BENCHMARK(join_fresh_buffers)->Args({300, 300})->Args({1344, 1024});
+
+struct BuffersInOpenCv {
+  BuffersInOpenCv(int width, int height) {
+    for (int i = 0; i < 2; ++i) {
+      z[i].create(height, width, CV_32F);
+      color[i].create(height, width, CV_8UC4);
+      part[i].create(height, width, CV_32S);
+      cv::randu(z[i], 0, 1);
+      cv::randu(color[i], 0, 255);
+      cv::randu(part[i], 0, 7);
+    }
+  }
+  void join() {
     cv::compare(z[1], z[0], mask, cv::CMP_GT);
     z[1].copyTo(z[0], mask);
     color[1].copyTo(color[0], mask);
     part[1].copyTo(part[0], mask);
+  }
+  cv::Mat z[2], color[2], part[2], mask;
+};
+
+void join_buffers_opencv(benchmark::State& state) {
+  BuffersInOpenCv buffers(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  for (auto _ : state) {
+    buffers.join();
     benchmark::ClobberMemory();
   }
-  state.SetItemsProcessed(state.iterations() * width * height);
+  state.SetItemsProcessed(state.iterations() * state.range(0) * state.range(1));
 }
 BENCHMARK(join_buffers_opencv)->Args({300, 300})->Args({1344, 1024});
+
+void join_fresh_buffers_opencv(benchmark::State& state) {
+  BuffersInOpenCv buffers(static_cast<int>(state.range(0)), static_cast<int>(state.range(1)));
+  const cv::Mat z = buffers.z[0].clone(), color = buffers.color[0].clone(), part = buffers.part[0].clone();
+  for (auto _ : state) {
+    state.PauseTiming();
+    z.copyTo(buffers.z[0]);
+    color.copyTo(buffers.color[0]);
+    part.copyTo(buffers.part[0]);
+    state.ResumeTiming();
+    buffers.join();
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * state.range(0) * state.range(1));
+}
+BENCHMARK(join_fresh_buffers_opencv)->Args({300, 300})->Args({1344, 1024});
 
 /// As many bytes as a join reads and writes: 24 in, 12 out for each pixel, half of which a copy reads.
 void join_bytes_memcpy(benchmark::State& state) {
@@ -167,6 +216,61 @@ void join_bytes_memcpy(benchmark::State& state) {
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(pixels));
 }
 BENCHMARK(join_bytes_memcpy)->Args({300, 300})->Args({1344, 1024});
+
+/// A head that turns and walks, 4 ms apart.
+std::vector<layers::dmat4> tracked_poses(int count) {
+  std::vector<layers::dmat4> poses;
+  for (int k = 0; k < count; ++k) {
+    const double t_s = 0.004 * k, angle = 0.4 * std::sin(3 * t_s), c = std::cos(angle), s = std::sin(angle);
+    layers::dmat4 pose(1.0);
+    pose[0] = {c, 0, -s, 0};
+    pose[2] = {s, 0, c, 0};
+    pose[3] = {1.4 * t_s, 1.7 + 0.02 * std::sin(12 * t_s), 0.1 * t_s * t_s, 1};
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+void kalman(benchmark::State& state) {
+  const std::vector<layers::dmat4> poses = tracked_poses(static_cast<int>(state.range(0)));
+  layers::KalmanNoise noise;
+  noise.coast_s = noise.push_s = state.range(1) != 0 ? 0.1 : 0;
+  for (auto _ : state) benchmark::DoNotOptimize(layers::predict_kalman(poses, 0.004, 0.05, noise));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(kalman)->Args({32, 0})->Args({32, 1});
+
+#ifdef TALISMAN_OPENCV_VIDEO
+/// Six coordinates alone, without the logarithms of rotations: predicted and corrected pose by pose, with the same matrices.
+void kalman_opencv(benchmark::State& state) {
+  const int poses = static_cast<int>(state.range(0));
+  const double h = 0.004, r = 2e-4, q = 50;
+  for (auto _ : state) {
+    double ahead = 0;
+    for (int axis = 0; axis < 6; ++axis) {
+      cv::KalmanFilter filter(3, 1, 0, CV_64F);
+      filter.transitionMatrix = (cv::Mat_<double>(3, 3) << 1, h, h * h / 2, 0, 1, h, 0, 0, 1);
+      filter.measurementMatrix = (cv::Mat_<double>(1, 3) << 1, 0, 0);
+      filter.processNoiseCov =
+          q * q *
+          (cv::Mat_<double>(3, 3) << std::pow(h, 5) / 20, std::pow(h, 4) / 8, std::pow(h, 3) / 6,
+           std::pow(h, 4) / 8, std::pow(h, 3) / 3, h * h / 2, std::pow(h, 3) / 6, h * h / 2, h);
+      filter.measurementNoiseCov = (cv::Mat_<double>(1, 1) << r * r);
+      filter.errorCovPost = (cv::Mat_<double>(3, 3) << r * r, 0, 0, 0, 1e4, 0, 0, 0, 1e6);
+      cv::Mat_<double> measured(1, 1);
+      for (int k = 1; k < poses; ++k) {
+        measured(0) = 0.01 * k + 0.001 * axis;
+        filter.predict();
+        filter.correct(measured);
+      }
+      ahead += filter.statePost.at<double>(0) + 0.05 * filter.statePost.at<double>(1);
+    }
+    benchmark::DoNotOptimize(ahead);
+  }
+  state.SetItemsProcessed(state.iterations() * poses);
+}
+BENCHMARK(kalman_opencv)->Arg(32);
+#endif
 
 }  // namespace
 }  // namespace talisman

@@ -31,21 +31,60 @@ Picture random_picture(std::mt19937& random) {
   return picture;
 }
 
+void expect_joined(const Picture& a, const Picture& b, const Picture& joined) {
+  for (int i = 0; i < kTexels; ++i) {
+    const bool take =
+        b.depth.z[i] > a.depth.z[i] || (b.depth.z[i] == a.depth.z[i] && b.depth.part[i] < a.depth.part[i]);
+    const Picture& seen = take ? b : a;
+    ASSERT_EQ(joined.color.texels[i], seen.color.texels[i]) << i;
+    ASSERT_EQ(joined.depth.z[i], seen.depth.z[i]) << i;
+    ASSERT_EQ(joined.depth.part[i], seen.depth.part[i]) << i;
+  }
+}
+
 TEST(JoinChunks, TheNearerIsSeenAndAtEqualDepthTheLowerNumber) {
   std::mt19937 random(18);
   for (int trial = 0; trial < 50; ++trial) {
     const Picture a = random_picture(random), b = random_picture(random);
     Picture joined = a;
     join_chunks(b.color, b.depth, joined.color, joined.depth);
-    for (int i = 0; i < kTexels; ++i) {
-      const bool take =
-          b.depth.z[i] > a.depth.z[i] || (b.depth.z[i] == a.depth.z[i] && b.depth.part[i] < a.depth.part[i]);
-      const Picture& seen = take ? b : a;
-      ASSERT_EQ(joined.color.texels[i], seen.color.texels[i]);
-      ASSERT_EQ(joined.depth.z[i], seen.depth.z[i]);
-      ASSERT_EQ(joined.depth.part[i], seen.depth.part[i]);
-    }
+    expect_joined(a, b, joined);
   }
+}
+
+// Groups of texels of which none is seen, all are, or all are at equal depth: those are joined without looking at all of it.
+TEST(JoinChunks, GroupsThatAreAllBehindBeforeOrEqualAreJoinedAsOneTexelIs) {
+  std::mt19937 random(20);
+  for (int trial = 0; trial < 50; ++trial) {
+    Picture a = random_picture(random), b = random_picture(random);
+    for (int group = 0; group < kTexels; group += 4)
+      for (int i = group; i < group + 4; ++i) {
+        const int kind = (group >> (2 + trial % 4)) % 4;
+        if (kind == 0) b.depth.z[i] = a.depth.z[i] / 2;
+        if (kind == 1) b.depth.z[i] = a.depth.z[i] + 1;
+        if (kind == 2) b.depth.z[i] = a.depth.z[i];
+      }
+    Picture joined = a;
+    join_chunks(b.color, b.depth, joined.color, joined.depth);
+    expect_joined(a, b, joined);
+  }
+}
+
+// Of a picture that ends inside its second chunk: what lies beyond is not of it.
+TEST(PlanBuffer, EdgesAreTexelsOfThePictureThatAreCoveredInPart) {
+  PlanBuffer buffer({kChunkSize + 3, 2});
+  Picture picture;
+  picture.color.texels[0].a = 1;                 // counts
+  picture.color.texels[1].a = 255;               // covered
+  picture.color.texels[2].a = 254;               // counts in the first chunk and in the second
+  picture.color.texels[3].a = 7;                 // in the first chunk alone
+  picture.color.texels[kChunkSize].a = 128;      // second row: counts
+  picture.color.texels[2 * kChunkSize].a = 128;  // below the picture
+  EXPECT_EQ(buffer.edge_texels(), 0);
+  buffer.put(0, picture.color, picture.depth);
+  EXPECT_EQ(buffer.edge_texels(), 4);
+  buffer.put(1, picture.color, picture.depth);
+  EXPECT_EQ(buffer.edge_texels(), 4 + 3);
 }
 
 TEST(PlanBuffer, JoinsInAnyOrderShowTheSame) {

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter of constant acceleration: exact where that is the motion, and sound where poses are missing, stand still or turn
+// The filter of constant acceleration, and of one that dies away: exact where that is the motion, and sound where poses are missing, stand still or turn
 // the long way round.
 #include "layers/predict_kalman.h"
 
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -57,14 +59,12 @@ TEST(PredictKalman, FollowsConstantAcceleration) {
 
 /// The same estimate all at once: the states (x, v, a) of all poses that minimise
 ///   |s₀ − (z₀, 0, 0)|² P₀⁻¹ + Σ |s_k − F s_{k−1}|² Q⁻¹ + Σ (z_k − x_k)² / r²
-/// by normal equations and elimination, and the parabola of the last of them.
-double all_at_once(const std::vector<double>& z, double h, double horizon, double r, double q) {
+/// by normal equations and elimination, and where the last of them goes on to.
+double all_at_once(const std::vector<double>& z, const dmat3& f, const dmat3& noise, const dmat3& ahead,
+                   double r) {
   const std::size_t n = 3 * z.size();
   std::vector<std::vector<double>> a(n, std::vector<double>(n + 1, 0));
-  const dmat3 f{{1, 0, 0}, {h, 1, 0}, {h * h / 2, h, 1}};
-  const double h2 = h * h, h3 = h2 * h, h4 = h3 * h, h5 = h4 * h;
-  const dmat3 weight =
-      glm::inverse(q * q * dmat3{{h5 / 20, h4 / 8, h3 / 6}, {h4 / 8, h3 / 3, h2 / 2}, {h3 / 6, h2 / 2, h}});
+  const dmat3 weight = glm::inverse(noise);
   const double prior[3] = {1 / (r * r), 1e-4, 1e-6};
   for (std::size_t i = 0; i < 3; ++i) a[i][i] += prior[i];
   a[0][n] += prior[0] * z[0];
@@ -87,24 +87,111 @@ double all_at_once(const std::vector<double>& z, double h, double horizon, doubl
     for (std::size_t column = i + 1; column < n; ++column) a[i][n] -= a[i][column] * a[column][n];
     a[i][n] /= a[i][i];
   }
-  return a[n - 3][n] + horizon * a[n - 2][n] + horizon * horizon / 2 * a[n - 1][n];
+  return ahead[0][0] * a[n - 3][n] + ahead[1][0] * a[n - 2][n] + ahead[2][0] * a[n - 1][n];
 }
 
-TEST(PredictKalman, IsTheEstimateOfAllPosesAtOnce) {
-  constexpr double kFrame_s = 0.02;
-  std::vector<dmat4> poses(10, dmat4(1.0));
-  std::vector<double> z;
-  for (std::size_t k = 0; k < poses.size(); ++k) {
-    poses[k][3].x = 0.3 * std::sin(0.7 * static_cast<double>(k)) + 0.01 * static_cast<double>(k * k % 7);
-    z.push_back(poses[k][3].x - 0.3 * std::sin(0.7 * 9) - 0.01 * (81 % 7));  // from the last one on
+/// What a state becomes, by many small steps of Runge and Kutta.
+dvec3 gone_on(dvec3 x, double h, const KalmanNoise& noise, int steps = 400) {
+  const double a = noise.coast_s > 0 ? 1 / noise.coast_s : 0, b = noise.push_s > 0 ? 1 / noise.push_s : 0,
+               d = h / steps;
+  const auto rate = [&](const dvec3& s) { return dvec3(s.y, s.z - a * s.y, -b * s.z); };
+  for (int k = 0; k < steps; ++k) {
+    const dvec3 k1 = rate(x), k2 = rate(x + d / 2 * k1), k3 = rate(x + d / 2 * k2), k4 = rate(x + d * k3);
+    x += d / 6 * (k1 + 2.0 * k2 + 2.0 * k3 + k4);
   }
+  return x;
+}
+
+dmat3 step_over(double h, const KalmanNoise& noise) {
+  return {gone_on({1, 0, 0}, h, noise), gone_on({0, 1, 0}, h, noise), gone_on({0, 0, 1}, h, noise)};
+}
+
+/// q² ∫ g gᵀ ds by midpoints.
+dmat3 noise_over(double h, const KalmanNoise& noise, double q) {
+  constexpr int kSlices = 2000;
+  dmat3 sum(0.0);
+  for (int k = 0; k < kSlices; ++k) {
+    const dvec3 g = gone_on({0, 0, 1}, h * (k + 0.5) / kSlices, noise, 40);
+    sum += glm::outerProduct(g, g) * (q * q * h / kSlices);
+  }
+  return sum;
+}
+
+/// Ten values, told from the last one.
+std::vector<double> wavering() {
+  std::vector<double> z;
+  for (int k = 0; k < 10; ++k)
+    z.push_back(0.3 * std::sin(0.7 * k) + 0.01 * (k * k % 7) - 0.3 * std::sin(0.7 * 9) - 0.01 * (81 % 7));
+  return z;
+}
+
+constexpr double kFrame_s = 0.02, kAhead_s = 0.03;
+
+TEST(PredictKalman, IsTheEstimateOfAllPosesAtOnce) {
+  const std::vector<double> z = wavering();
+  std::vector<dmat4> poses(z.size(), dmat4(1.0));
+  for (std::size_t k = 0; k < z.size(); ++k) poses[k][3].x = z[k];
   for (const auto& [place, jerk] : {std::pair{0.05, 20.0}, {0.01, 300.0}, {0.3, 5.0}}) {
     KalmanNoise noise;
     noise.place_m = place;
     noise.jerk_m = jerk;
-    const double ahead = predict_kalman(poses, kFrame_s, 0.03, noise)[3].x - poses.back()[3].x;
-    EXPECT_NEAR(ahead, all_at_once(z, kFrame_s, 0.03, place, jerk), 1e-6) << place << ", " << jerk;
+    const double at_once = all_at_once(z, step_over(kFrame_s, noise), noise_over(kFrame_s, noise, jerk),
+                                       step_over(kAhead_s, noise), place);
+    EXPECT_NEAR(predict_kalman(poses, kFrame_s, kAhead_s, noise)[3].x, at_once, 2e-6)
+        << place << ", " << jerk;
   }
+}
+
+double angle_about_x(const dmat4& pose) { return std::atan2(pose[1].z, pose[1].y); }
+
+TEST(PredictKalman, TurningThatDiesAwayIsTheEstimateOfAllPosesAtOnce) {
+  const std::vector<double> z = wavering();
+  std::vector<dmat4> poses;
+  for (const double angle : z) poses.push_back(turned_by(angle, {1, 0, 0}));
+  for (const auto& [turn, jerk] : {std::pair{0.05, 20.0}, {0.01, 300.0}, {0.3, 5.0}})
+    for (const auto& [coast, push] :
+         {std::pair{0.0, 0.0}, {0.25, 0.0}, {0.0, 0.1}, {0.3, 0.02}, {0.05, 0.05}}) {
+      KalmanNoise noise;
+      noise.turn_rad = turn;
+      noise.jerk_rad = jerk;
+      noise.coast_s = coast;
+      noise.push_s = push;
+      const double at_once = all_at_once(z, step_over(kFrame_s, noise), noise_over(kFrame_s, noise, jerk),
+                                         step_over(kAhead_s, noise), turn);
+      EXPECT_NEAR(angle_about_x(predict_kalman(poses, kFrame_s, kAhead_s, noise)), at_once, 2e-6)
+          << turn << ", " << jerk << ", " << coast << ", " << push;
+    }
+}
+
+/// 0.9 − 0.4 exp(−t/C): the motion that the filter then goes by, and its end however far ahead. Places go on.
+TEST(PredictKalman, TurningThatCoastsComesToRest) {
+  KalmanNoise noise;
+  noise.coast_s = 0.2;
+  const auto coasting = [](double t_s) {
+    dmat4 m = turned_by(0.9 - 0.4 * std::exp(-t_s / 0.2), {1, 0, 0});
+    m[3].x = 2 * t_s;
+    return m;
+  };
+  const std::vector<dmat4> poses = history(coasting, 32);
+  EXPECT_LT(largest_entry_off(predict_kalman(poses, kStep_s, 0.1, noise), coasting(0.1)), 1e-3);
+  noise.push_s = 0.1;
+  EXPECT_NEAR(angle_about_x(predict_kalman(poses, kStep_s, 1e6, noise)), 0.9, 0.02);
+}
+
+/// From pushes so short that they are white to coasting so long that nothing dies away: finite, and towards the old ones.
+TEST(PredictKalman, AnyTimesThatMotionLastsAreSound) {
+  const std::vector<dmat4> poses = history(accelerating, 32);
+  const dmat4 lasting = predict_kalman(poses, kStep_s, 0.05, kUsual);
+  for (const double coast : {0.0, 1e-6, 1e-3, 1.0, 1e6})
+    for (const double push : {0.0, 1e-6, 1e-3, 1.0, 1e6}) {
+      KalmanNoise noise;
+      noise.coast_s = coast;
+      noise.push_s = push;
+      const double off = largest_entry_off(predict_kalman(poses, kStep_s, 0.05, noise), lasting);
+      if ((coast == 0 || coast == 1e6) && (push == 0 || push == 1e6)) {
+        EXPECT_LT(off, 1e-5) << coast << ", " << push;
+      }
+    }
 }
 
 TEST(PredictKalman, StandsStillWithWhatStandsStill) {

@@ -47,6 +47,13 @@ TEST(LatencyOptions, BrokenRulesAreNamed) {
   EXPECT_EQ(first_defect(options), "");
   options.kalman.jerk_rad = 0;
   EXPECT_EQ(first_defect(options), "kalman_jerk_rad is 0, must be from 1e-12 to 1e12");
+  options.kalman = {};
+  options.kalman.coast_s = 1e-9;
+  EXPECT_EQ(first_defect(options), "kalman_coast_s is 1e-09, must be 0 (for ever), or from 1e-6 to 1e6");
+  options.kalman.coast_s = 0.25;
+  EXPECT_EQ(first_defect(options), "");
+  options.kalman.push_s = NAN;
+  EXPECT_NE(first_defect(options), "");
 }
 
 }  // namespace

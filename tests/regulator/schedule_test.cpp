@@ -153,6 +153,8 @@ TEST(LongestRun, AsksFarLessThanEveryPair) {
   });
   EXPECT_EQ(run, (FrameRun{10, 0, 20}));
   EXPECT_LT(asked, 400) << "all pairs would be 201 · 401";
+  EXPECT_LE(asked, 10 + 20 + 200 + 5)
+      << "the two runs that are followed, and one question for each other instant";
 }
 
 }  // namespace

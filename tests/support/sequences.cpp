@@ -143,4 +143,12 @@ sequences::Variant every_effect(int frames) {
 sequences::Sequence moving_sequence(int frames) { return sequence_of("moving", moving_scene(), frames); }
 sequences::Sequence resting_sequence(int frames) { return sequence_of("resting", cube_scene(), frames); }
 
+sequences::Variant calling_for(layers::Effect effect, int frames) {
+  if (effect != layers::Effect::Predictive) return every_effect(frames);
+  sequences::Sequence sequence = moving_sequence(frames);
+  sequence.regulator.policy = regulator::Policy::Predictive;
+  sequence.regulator.lookahead.frames = 4;
+  return run_of(sequence);
+}
+
 }  // namespace talisman::tests

@@ -174,6 +174,7 @@ bool pays_over_time(Effect effect) {
     case Effect::SpecularLayer:
     case Effect::ReflectionLayer:
     case Effect::TextureLayers:
+    case Effect::Predictive:
       return true;
     default:
       return false;

@@ -275,9 +275,21 @@ void decide_layer(const LayerShare& share, double displayed_px, const std::strin
   decision.shown_geometric_px = displayed_px;
 }
 
+/// A surface is drawn with all terms of its shading, and looks up the maps of them all.
+void look_up_maps(const Pipeline& pipeline, PipelineState& state, const ShadowMapsNow& maps,
+                  FrameReport& report) {
+  for (const layers::Layer& layer : report.layers) {
+    const int surface = layer.base < 0 ? layer.id : layer.base;
+    if (report.plan.decisions[surface].action == regulator::Action::Rerender)
+      look_up_shadow_maps(pipeline, state, maps, layer.id, report.frame, report);
+  }
+  finish_shadow_maps(state, report);
+}
+
 }  // namespace
 
-void plan_predicted(const Pipeline& pipeline, PipelineState& state, FrameReport& report) {
+void plan_predicted(const Pipeline& pipeline, PipelineState& state, const ShadowMapsNow& maps,
+                    FrameReport& report) {
   PredictiveMemory& memory = memory_of(pipeline, state);
   const PlannedSlice& planned = memory.slice_of(pipeline, report.frame);
   const Slice& slice = planned.slice;
@@ -305,6 +317,7 @@ void plan_predicted(const Pipeline& pipeline, PipelineState& state, FrameReport&
     decide_layer(share, planned.motion.displayed_px(report.frame - slice.first, decision.layer), surprise,
                  decision);
   }
+  look_up_maps(pipeline, state, maps, report);
 }
 
 chunker::CompositeResult draw_predicted(const Drawing& drawing, PipelineState& state, FrameReport& report) {
@@ -319,6 +332,8 @@ chunker::CompositeResult draw_predicted(const Drawing& drawing, PipelineState& s
   const layers::ivec2 display_px = drawing.pipeline.settings.view.display_px;
   chunker::Sprite sprite(display_px);
   if (joined != nullptr) sprite = joined->sprite();
+  if (joined != nullptr && drawing.pipeline.settings.render.samples > 1)
+    report.predictive->edge_pixels = joined->edge_texels();
   chunker::PlacedSprite placed;
   placed.sprite = &sprite;
   if (report.late) placed.screen_from_sprite = report.late->whole_picture;

@@ -29,6 +29,7 @@
 #include "sequences/pipeline/pipeline.h"
 #include "sequences/pipeline/predictive/slices.h"
 #include "sequences/pipeline/shade_passes.h"
+#include "sequences/pipeline/shadow_map_planning.h"
 
 namespace talisman::sequences {
 
@@ -108,7 +109,9 @@ class PredictiveMemory {
 };
 
 /// Decides what of each layer is drawn in the frame of `report`: replaces the decisions of its layers, and counts.
-void plan_predicted(const Pipeline& pipeline, PipelineState& state, FrameReport& report);
+/// The shadow maps that are looked up for it are noted, too.
+void plan_predicted(const Pipeline& pipeline, PipelineState& state, const ShadowMapsNow& maps,
+                    FrameReport& report);
 
 /// The frame. `drawing` is of the author's layers, and of the scene at that frame.
 chunker::CompositeResult draw_predicted(const Drawing& drawing, PipelineState& state, FrameReport& report);

@@ -19,7 +19,10 @@ struct PredictiveReport {
   int joins_without_content = 0;         ///< of these: with a node that has no part
   std::int64_t prediction_vertices = 0;  ///< projected for this frame: those of its slice in its first
   std::int64_t buffer_bytes = 0;         ///< when drawn: of all buffers, with depth and part
-  chunker::JoinCounters joined;          ///< when drawn: what was joined for this frame
+  /// When drawn with more than one sample for each texel: displayed pixels that are partly covered. A join shows the
+  /// background through them where another buffer has something behind (chunker/plan_buffer.h).
+  std::int64_t edge_pixels = 0;
+  chunker::JoinCounters joined;  ///< when drawn: what was joined for this frame
   bool operator==(const PredictiveReport&) const = default;
 };
 

@@ -27,6 +27,12 @@ TEST(MissingEffect, IsNamedWithWhoCallsForIt) {
       "configured without (TALISMAN_WITHOUT)");
 }
 
+TEST(MissingEffect, APolicyIsNamedAsTheRunAsksForIt) {
+  EXPECT_EQ(missing_in(tests::calling_for(Effect::Predictive, 2), "predictive"),
+            "calls for predictive (the run's policy is predictive), which this build was configured without "
+            "(TALISMAN_WITHOUT)");
+}
+
 TEST(MissingEffect, OfSeveralTheFirstOfTheTableIsNamed) {
   EXPECT_THAT(missing_in(tests::every_effect(2), "texture_layers,skinning"),
               testing::StartsWith("calls for skinning (part 'bar' has a skin)"));
@@ -38,8 +44,9 @@ class MissingEffectOf : public testing::TestWithParam<Effect> {};
 // left out too must not matter in the second case, so all that `without_effect` took is left out.
 TEST_P(MissingEffectOf, MattersOnlyWhereItIsCalledFor) {
   const std::string name(layers::name(GetParam()));
-  EXPECT_THAT(missing_in(tests::every_effect(2), name), testing::StartsWith("calls for " + name + " ("));
-  const Variant without = without_effect(tests::every_effect(2), GetParam());
+  const Variant calling = tests::calling_for(GetParam(), 2);
+  EXPECT_THAT(missing_in(calling, name), testing::StartsWith("calls for " + name + " ("));
+  const Variant without = without_effect(calling, GetParam());
   std::string uncalled;
   for (const layers::EffectCall& call : effects_of(without))
     if (!call.called) uncalled += (uncalled.empty() ? "" : ",") + std::string(layers::name(call.effect));

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Words of policy predictive and of frames that last, as the tool takes and refuses them.
+#include <cstdio>
+#include <sstream>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -45,6 +48,26 @@ TEST_F(PredictiveWords, IntervalsAndSlicesAreOfPolicyPredictive) {
                    {"lookahead is 256", "at most 128 where intervals is data"});
   write("bad.yaml", read("swarm.yaml") + "regulator: {policy: predictive, intervals: 3}\n");
   expect_bad_input("plan bad.yaml", {"bad.yaml:7", "intervals"});
+}
+
+TEST_F(PredictiveWords, EdgesThatAJoinMayDarkenAreSaidWithTheirShare) {
+  const std::string render = "render swarm.yaml --no-report --format none --force ";
+  const Outcome many = run(render + "--policy predictive --out many --samples 16");
+  EXPECT_EQ(many.exit_code, 0);
+  std::int64_t edges = 0, frames = 0;
+  std::istringstream lines(read("many/frames.jsonl"));
+  for (std::string line; std::getline(lines, line); ++frames)
+    edges += nlohmann::json::parse(line).at("predictive").at("edge_pixels").get<std::int64_t>();
+  EXPECT_GT(edges, 0);
+  char share[32];
+  std::snprintf(share, sizeof share, "%.2f %%", 100.0 * static_cast<double>(edges) / (80.0 * 60 * frames));
+  EXPECT_THAT(many.output, testing::HasSubstr("warning: " + std::string(share) +
+                                              " of the pixels shown are covered in part"));
+  for (const std::string& words :
+       {render + "--policy predictive --out one --samples 1", render + "--out direct --policy direct"})
+    EXPECT_THAT(run(words).output, testing::Not(testing::HasSubstr("covered in part"))) << words;
+  EXPECT_THAT(run("plan swarm.yaml --policy predictive --no-report").output,
+              testing::Not(testing::HasSubstr("covered in part")));
 }
 
 // Where plans are dropped a frame's slice follows from those before it: it is the same in a part of the run.

@@ -31,6 +31,11 @@ const Variant& six_frames() {
   return variant;
 }
 
+const Variant& calling_for(Effect effect) {
+  static const Variant predictive = tests::calling_for(Effect::Predictive, kFrames);
+  return effect == Effect::Predictive ? predictive : six_frames();
+}
+
 /// Effects that are called for in `before` and not in `after`.
 std::set<Effect> lost(const Variant& before, const Variant& after) {
   std::set<Effect> effects;
@@ -55,12 +60,15 @@ FrameReport frame_of(const Variant& variant, int frame) {
 
 // --- Each effect alone
 
-class WithoutEffect : public testing::TestWithParam<Effect> {};
+class WithoutEffect : public testing::TestWithParam<Effect> {
+ protected:
+  const Variant& given() const { return calling_for(GetParam()); }
+};
 
 TEST_P(WithoutEffect, IsNotCalledForAnyMore) {
-  const layers::EffectCall with = effect_call(six_frames(), GetParam());
+  const layers::EffectCall with = effect_call(given(), GetParam());
   ASSERT_TRUE(with.called) << "the scene must call for all: " << with.why;
-  const layers::EffectCall without = effect_call(without_effect(six_frames(), GetParam()), GetParam());
+  const layers::EffectCall without = effect_call(without_effect(given(), GetParam()), GetParam());
   EXPECT_FALSE(without.called) << without.why;
   EXPECT_FALSE(without.why.empty());
   EXPECT_THAT(without.layers, IsEmpty());
@@ -86,12 +94,12 @@ TEST_P(WithoutEffect, NothingElseGoesThanTheHeaderSays) {
   std::set<Effect> expected = {GetParam()};
   if (const auto found = also.find(GetParam()); found != also.end())
     expected.insert(found->second.begin(), found->second.end());
-  EXPECT_THAT(lost(six_frames(), without_effect(six_frames(), GetParam())),
+  EXPECT_THAT(lost(given(), without_effect(given(), GetParam())),
               UnorderedElementsAreArray(expected));
 }
 
 TEST_P(WithoutEffect, LayersAreFactoredAgainAndTheSceneIsSound) {
-  const Variant without = without_effect(six_frames(), GetParam());
+  const Variant without = without_effect(given(), GetParam());
   EXPECT_EQ(layers::first_defect(*without.sequence.scene), "");
   EXPECT_EQ(without.sequence.layers.defect, "");
   for (std::size_t id = 0; id < without.sequence.layers.layers.size(); ++id)
@@ -99,17 +107,17 @@ TEST_P(WithoutEffect, LayersAreFactoredAgainAndTheSceneIsSound) {
 }
 
 TEST_P(WithoutEffect, TakenTwiceIsTakenOnce) {
-  const Variant once = without_effect(six_frames(), GetParam());
+  const Variant once = without_effect(given(), GetParam());
   const Variant twice = without_effect(once, GetParam());
   EXPECT_EQ(twice.sequence.scene, once.sequence.scene) << "nothing is copied where nothing is taken";
   EXPECT_EQ(names_of(twice), names_of(once));
 }
 
 TEST_P(WithoutEffect, DrawsAFrameAndWhatWasGivenStaysAsItWas) {
-  const std::string before = hash_of(frame_of(six_frames(), 0).picture);
-  const FrameReport report = frame_of(without_effect(six_frames(), GetParam()), kFrames - 1);
+  const std::string before = hash_of(frame_of(given(), 0).picture);
+  const FrameReport report = frame_of(without_effect(given(), GetParam()), kFrames - 1);
   EXPECT_EQ(report.picture.width, 96);
-  EXPECT_EQ(hash_of(frame_of(six_frames(), 0).picture), before);
+  EXPECT_EQ(hash_of(frame_of(given(), 0).picture), before);
 }
 
 std::string effect_name(const testing::TestParamInfo<Effect>& info) {

@@ -61,13 +61,14 @@ class EffectTable : public ::testing::Test {
   std::string missing_;
 };
 
-/// What only models of other programs bring.
+/// What only models of other programs bring, or the policy of a run.
 const std::vector<Row> kOfModels = {
     {"emissive_map", kNot, "no lit material has an emissive texture"},
     {"morphing", kNot, "no part has morph targets"},
     {"light_falloff", kNot, "no light fades with distance"},
     {"normal_map", kNot, "no lit part has a normal texture and tangents"},
-    {"moving_picture", kNot, "no material shows an image sequence or a video"}};
+    {"moving_picture", kNot, "no material shows an image sequence or a video"},
+    {"predictive", kNot, "the run does not ask for it"}};
 
 /// The stage, factored or not: it differs in the resolution of its layers and from the shadow layers on.
 std::vector<Row> stage_table(const Row& resolution, const std::vector<Row>& shade_layers) {
@@ -142,7 +143,8 @@ std::vector<Row> plain_rows(const Row& texture, const Row& lighting, const Row& 
           kOfModels[1],
           kOfModels[2],
           kOfModels[3],
-          kOfModels[4]};
+          kOfModels[4],
+          kOfModels[5]};
 }
 
 TEST_F(EffectTable, OfTheCarouselCallsForOrderAndLight) {
@@ -193,6 +195,18 @@ TEST_F(EffectTable, OfARunThatCompressesSaysSoOfEveryLayer) {
   rows[8] = {"sprite_compression", kCalled, "the run asks for quality 85"};
   expect_table(load_sequence(folder.write("triangle.obj", kTriangle), {.stage = false}), rows,
                {.compression_quality = 85});
+}
+
+TEST_F(EffectTable, OfARunThatPredictsSaysSoOfEveryLayer) {
+  const Sequence blocks = load_sequence("fearing/blocks");
+  layers::RunEffects run;
+  run.predictive = true;
+  const std::vector<layers::EffectCall> table =
+      layers::effects_called_for(*blocks.scene, blocks.layers.layers, run);
+  const layers::EffectCall& call = table.at(static_cast<std::size_t>(layers::Effect::Predictive));
+  EXPECT_TRUE(call.called);
+  EXPECT_EQ(call.why, "the run's policy is predictive");
+  EXPECT_EQ(call.layers.size(), blocks.layers.layers.size());
 }
 
 TEST_F(EffectTable, OfAModelWithATileAndAPaneCallsForWhatTheirMaterialsNeed) {

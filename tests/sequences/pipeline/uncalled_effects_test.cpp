@@ -185,6 +185,24 @@ Numbers of_moving_pictures(const WholeRun& run) {
           {"bytes uploaded", double(bytes)}};
 }
 
+/// Buffers with depth, words of motion, and what joins them.
+Numbers of_prediction(const WholeRun& run) {
+  const auto number = [&](auto member) {
+    return sum_over(run, [=](auto& r) { return r.predictive ? double((*r.predictive).*member) : 0; });
+  };
+  return {{"reports", sum_over(run, [](auto& r) { return r.predictive.has_value(); })},
+          {"memory", double(run.state.predictive != nullptr)},
+          {"vertices projected", number(&PredictiveReport::prediction_vertices)},
+          {"parts drawn", number(&PredictiveReport::parts_drawn)},
+          {"joins", number(&PredictiveReport::joins_planned)},
+          {"bytes of buffers", number(&PredictiveReport::buffer_bytes)},
+          {"pixels copied or cleared", sum_over(run, [](auto& r) {
+             return r.predictive
+                        ? double(r.predictive->joined.pixels_copied + r.predictive->joined.pixels_cleared)
+                        : 0;
+           })}};
+}
+
 /// Every number of a run that belongs to one effect, besides its passes.
 Numbers numbers_of(const WholeRun& run, Effect effect) {
   switch (effect) {
@@ -220,6 +238,8 @@ Numbers numbers_of(const WholeRun& run, Effect effect) {
       return of_shade_layers(run, LayerKind::Texture);
     case Effect::MovingPicture:
       return of_moving_pictures(run);
+    case Effect::Predictive:
+      return of_prediction(run);
     default:
       break;  // leave nothing behind but their passes and the picture
   }
@@ -237,13 +257,18 @@ const WholeRun& run_with_all() {
   return run;
 }
 
+const WholeRun& run_with(Effect effect) {
+  static const WholeRun predictive(tests::calling_for(Effect::Predictive, kQuietFrames));
+  return effect == Effect::Predictive ? predictive : run_with_all();
+}
+
 class UncalledEffect : public testing::TestWithParam<Effect> {};
 
 TEST_P(UncalledEffect, LeavesNothingInTheRun) {
-  const WholeRun without(without_effect(tests::every_effect(kQuietFrames), GetParam()));
+  const WholeRun without(without_effect(tests::calling_for(GetParam(), kQuietFrames), GetParam()));
   EXPECT_EQ(passes_of(without, GetParam()), 0);
-  EXPECT_GT(passes_of(run_with_all(), GetParam()), 0) << "the sequence must call for it";
-  const Numbers with_it = numbers_of(run_with_all(), GetParam());
+  EXPECT_GT(passes_of(run_with(GetParam()), GetParam()), 0) << "the sequence must call for it";
+  const Numbers with_it = numbers_of(run_with(GetParam()), GetParam());
   for (const auto& [name, number] : numbers_of(without, GetParam())) {
     EXPECT_EQ(number, 0) << name;
     EXPECT_GT(with_it.at(name), 0) << name;
@@ -254,6 +279,17 @@ std::string effect_name(const testing::TestParamInfo<Effect>& info) {
   return std::string(layers::name(info.param));
 }
 INSTANTIATE_TEST_SUITE_P(Of, UncalledEffect, testing::ValuesIn(layers::kAllEffects), effect_name);
+
+TEST(UncalledEffects, NoOtherPolicyHasBuffersOrWords) {
+  for (const regulator::Policy policy : regulator::kAllPolicies) {
+    if (policy == regulator::Policy::Predictive) continue;
+    Variant variant = tests::calling_for(Effect::Predictive, kQuietFrames);
+    variant.settings.regulator.policy = policy;
+    const WholeRun run(variant);
+    for (const auto& [name, number] : of_prediction(run))
+      EXPECT_EQ(number, 0) << regulator::name(policy) << ": " << name;
+  }
+}
 
 TEST(UncalledEffects, CompressionIsNotInTheLinesOfTheFrames) {
   const WholeRun without(without_effect(tests::every_effect(kQuietFrames), Effect::SpriteCompression));

@@ -138,6 +138,43 @@ std::vector<std::vector<SpeedUpCell>> two_buffer_cells(PaperBench& bench, int sh
   return by_delta;
 }
 
+/// Speed-up of blocks that all move, slowly.
+double all_slow(double delta_px, const regulator::PlanShape& plan) {
+  std::vector<SpeedUpCell> cells{{100, plan, 0, 0}};
+  count_cells(TestScenario96::Blocks, true, delta_px, cells);
+  return cells.front().ours;
+}
+
+/// The threshold at which pairs of frames (k = N = 2) gain what the paper prints for its 1 px: as large as its pixel, in
+/// pixels of 12 a unit.
+double threshold_as_printed() {
+  constexpr double kPrinted = 1.46;
+  double low = 0.01, high = 1;
+  for (int halving = 0; halving < 5; ++halving) {
+    const double middle = (low + high) / 2;
+    (all_slow(middle, {2, 2}) < kPrinted ? low : high) = middle;
+  }
+  return (low + high) / 2;
+}
+
+/// Which reading of the scene fits k = N? By the paper's own columns, no part rests over four frames where most do over two.
+std::string why_not_indifferent(PaperBench& bench) {
+  const double delta_px = threshold_as_printed(), four = all_slow(delta_px, {4, 4}),
+               none = all_slow(0.01, {4, 4}), eight = all_slow(delta_px, {8, 8}),
+               none_eight = all_slow(0.01, {8, 8});
+  return "the scale of its pictures is not printed, and ours, 12 px a unit, is smaller: with 1 px many "
+         "blocks rest for "
+         "4 or 8 frames. In the paper 1 px gives 1.46 to pairs of frames and nothing to fours, so most of "
+         "its "
+         "blocks move between a third of a pixel and one a frame. With the threshold at which our pairs gain "
+         "1.46, " +
+         formatted(
+             "%.2f px, fours go from %.2f, where nothing is in the second buffer, to %.2f and eights from "
+             "%.2f to %.2f",
+             delta_px, none, four, none_eight, eight) +
+         "; at 1 px, from N = 16 on: " + indifferent_96(two_buffer_cells(bench, 16)).ours;
+}
+
 std::string listed_numbers(const std::vector<double>& values) {
   std::string text;
   for (const double value : values) text += (text.empty() ? "" : " ") + fixed(value, 2);
@@ -273,15 +310,9 @@ Item motion_thresholds_96() {
                return no_higher_96(column_of(slow_cells(bench, 0.5, false), 100),
                                    column_of(slow_cells(bench, 1, false), 100));
              }};
-  Claim two{"k-is-N", "k = N: 0.86 to 0.88 where all moves, whatever the threshold",
-            "within 5 %, N = 4 to 32",
-            [](PaperBench& bench) { return indifferent_96(two_buffer_cells(bench, 4)); },
-            [](PaperBench& bench) {
-              return "at 12 px a unit, which the paper does not print, some of what moves stays within 1 px "
-                     "for 4 or 8 frames; "
-                     "from N = 16 on: " +
-                     indifferent_96(two_buffer_cells(bench, 16)).ours;
-            }};
+  Claim two{
+      "k-is-N", "k = N: 0.86 to 0.88 where all moves, whatever the threshold", "within 5 %, N = 4 to 32",
+      [](PaperBench& bench) { return indifferent_96(two_buffer_cells(bench, 4)); }, why_not_indifferent};
   Claim bimodal{"bimodal", "1 % moving, N = 32: 4.43 with k = N, 4.25 with k = 2",
                 "k = N no slower, within 5 %", [](PaperBench& bench) {
                   const double two_buffers = column_of(slow_cells(bench, 0.01, true), 1).back(),
