@@ -83,7 +83,7 @@ bool LivePlan::follow(const std::vector<CameraPose>& flight) {
   return true;
 }
 
-void LivePlan::advance(double ms) {
+void LivePlan::advance(double ms, const std::function<bool()>& is_stale) {
   const Stopwatch watch;
   for (int frame = planned(); frame < frames(); ++frame) {
     PlannedFrame made;
@@ -97,7 +97,7 @@ void LivePlan::advance(double ms) {
       made.rows.push_back(place);
     }
     planned_.push_back(std::move(made));
-    if (watch.ms() >= ms) return;
+    if (watch.ms() >= ms || is_stale()) return;
   }
 }
 

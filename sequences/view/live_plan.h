@@ -4,6 +4,7 @@
 /// The plan of one setting, made slice by slice: the page asks again until it has all frames, so what nobody asks for any
 /// more costs nothing. Its numbers are those of the tables of columns (results/column_tables.h), by their names.
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -32,8 +33,8 @@ class LivePlan {
   const Settings& settings() const { return pipeline_.settings; }
   /// Another flight of the camera, where there is one; all is planned anew. False where the camera is the sequence's own.
   bool follow(const std::vector<CameraPose>& flight);
-  /// Plans further frames for about `ms`, at least one while there are any.
-  void advance(double ms);
+  /// Plans further frames for about `ms`, at least one while there are any; no further once `is_stale` says so.
+  void advance(double ms, const std::function<bool()>& is_stale);
   /// The frames from `from` on that are planned: {"planned", "frames", "decisions": a list per column of the map,
   /// "frame_lines": a list per column of the curves}.
   nlohmann::ordered_json rows(int from) const;

@@ -71,7 +71,7 @@ Json about_json(const ViewSource& source) {
 }  // namespace
 
 /// Plans a slice further. The more do so, the shorter it is: nobody is to wait long for an answer.
-void LiveView::advance(LivePlan& plan) {
+void LiveView::advance(LivePlan& plan, double slice_ms, const std::function<bool()>& is_stale) {
   struct Counted {
     explicit Counted(std::atomic<int>& of) : number(++of), counter(of) {}
     ~Counted() { --counter; }
@@ -79,7 +79,7 @@ void LiveView::advance(LivePlan& plan) {
     std::atomic<int>& counter;
   };
   const Counted planning(planning_);
-  plan.advance(kSlice_ms / planning.number);
+  plan.advance(slice_ms / planning.number, is_stale);
 }
 
 /// The tab's plan; null: it has none.
@@ -125,7 +125,8 @@ ViewAnswer LiveView::plan(const std::string& body) {
     const auto tab = plan_of(request);
     const std::lock_guard lock(tab->mutex);
     if (!tab->plan || is_stale(request, "plan")) return error_answer(kStale, "stale");
-    advance(*tab->plan);
+    advance(*tab->plan, request.from == 0 ? kFirstSlice_ms : kSlice_ms,
+            [&] { return is_stale(request, "plan"); });
     Json answer = tab->plan->rows(request.from);
     if (request.from == 0) answer["settings"] = json_of(tab->plan->settings());
     return ViewAnswer{200, answer.dump()};
@@ -148,7 +149,8 @@ ViewAnswer LiveView::lines(const std::string& body) {
     const ViewRequest request = view_request_from(body);
     const auto tab = plan_of(request);
     const std::lock_guard lock(tab->mutex);
-    while (tab->plan && !stop_ && tab->plan->planned() < tab->plan->frames()) advance(*tab->plan);
+    while (tab->plan && !stop_ && tab->plan->planned() < tab->plan->frames())
+      advance(*tab->plan, kSlice_ms, [] { return false; });
     return tab->plan ? ViewAnswer{200, tab->plan->lines(), "application/x-ndjson"}
                      : error_answer(kStale, "stale");
   });

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
@@ -33,8 +34,9 @@ class LiveView {
 
  private:
   static constexpr std::size_t kMostTabs = 4, kMostPictures = 4;
-  static constexpr double kSlice_ms =
-      80;  ///< of planning in one answer, shared by those who plan at the same time
+  /// Of planning in one answer, shared by those who plan at the same time. The first is soon there to be seen; those after
+  /// it cost less on the way when they are few.
+  static constexpr double kFirstSlice_ms = 80, kSlice_ms = 240;
 
   /// The plan of a tab. It is replaced rather than changed: what is being planned for a setting that is no more asked for
   /// ends by itself, and nobody waits for it.
@@ -48,7 +50,7 @@ class LiveView {
     std::unique_ptr<LivePictures> pictures;
   };
 
-  void advance(LivePlan& plan);
+  void advance(LivePlan& plan, double slice_ms, const std::function<bool()>& is_stale);
   std::shared_ptr<TabPlan> kept_plan(const std::string& tab);
   std::shared_ptr<TabPlan> plan_of(const ViewRequest& request);
   LivePictures& pictures_of(const ViewRequest& request);

@@ -249,9 +249,10 @@ TEST_F(Tool, AccuracyOfTheRegulatorOnABareModel) {
   EXPECT_THAT(page, HasSubstr("<p class=\"verdict\" id=\"verdict\">Under a bound of "));
   EXPECT_THAT(page, HasSubstr("<th scope=\"row\"><a href=\"runs/threshold-4-px.html\">threshold</a></th>"));
   EXPECT_THAT(page, HasSubstr("<a href=\"runs/hold-N-3.html\" aria-label=\"hold N 3\"><circle"));
-  EXPECT_EQ(run("accuracy --regulator cube.obj --frames 0-3 --size 32x24 --no-report --progress none --out bare")
-                .exit_code,
-            0);
+  EXPECT_EQ(
+      run("accuracy --regulator cube.obj --frames 0-3 --size 32x24 --no-report --progress none --out bare")
+          .exit_code,
+      0);
   EXPECT_FALSE(fs::exists(folder_ / "bare/runs"));
   EXPECT_THAT(read("bare/regulator.html"), Not(HasSubstr("runs/")));
   expect_bad_input("accuracy --renderer cube.obj --no-report",

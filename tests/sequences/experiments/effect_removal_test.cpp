@@ -94,8 +94,7 @@ TEST_P(WithoutEffect, NothingElseGoesThanTheHeaderSays) {
   std::set<Effect> expected = {GetParam()};
   if (const auto found = also.find(GetParam()); found != also.end())
     expected.insert(found->second.begin(), found->second.end());
-  EXPECT_THAT(lost(given(), without_effect(given(), GetParam())),
-              UnorderedElementsAreArray(expected));
+  EXPECT_THAT(lost(given(), without_effect(given(), GetParam())), UnorderedElementsAreArray(expected));
 }
 
 TEST_P(WithoutEffect, LayersAreFactoredAgainAndTheSceneIsSound) {
