@@ -45,6 +45,7 @@ Scene with_levels(Scene all, const LayerSet& set, LadderOptions options) {
     if (!part.is_seam && part.mesh >= 0) is_drawn[static_cast<std::size_t>(part.mesh)] = true;
   const std::vector<bool> locked = meshes_with_neighbours(all, set);
   made.ladders.resize(meshes);
+  made.boxes = mesh_boxes(all);
   for (std::size_t m = 0; m < meshes; ++m) {
     if (!is_drawn[m]) continue;
     options.lock_borders = locked[m];
@@ -93,13 +94,19 @@ int level_count(const Scene& scene, const Layer& layer) {
   return static_cast<int>(most);
 }
 
+double stretch_of(const Part& part, std::size_t i, const Layer& layer,
+                  const std::vector<dmat4>& world_from_part) {
+  double most = i < world_from_part.size() ? largest_stretch(world_from_part[i]) : 1;
+  if (part.skin < 0) return most;
+  for (std::size_t joint = layer.parts.size(); joint < world_from_part.size(); ++joint)
+    most = std::max(most, largest_stretch(world_from_part[joint]));
+  return most;
+}
+
 LayerLevel level_of(const Scene& scene, const Layer& layer, int level,
                     const std::vector<dmat4>& world_from_part) {
   LayerLevel result{layer.polygons, 0};
   if (!scene.levels) return result;
-  double joints = 0;  // the most that any joint stretches
-  for (std::size_t i = layer.parts.size(); i < world_from_part.size(); ++i)
-    joints = std::max(joints, largest_stretch(world_from_part[i]));
   for (std::size_t i = 0; i < layer.parts.size(); ++i) {
     const Part& part = scene.parts[static_cast<std::size_t>(layer.parts[i])];
     if (part.is_seam) continue;
@@ -107,9 +114,8 @@ LayerLevel level_of(const Scene& scene, const Layer& layer, int level,
     if (ladder.empty()) continue;
     const LadderLevel& drawn = ladder[at_level(ladder.size(), level)];
     result.polygons -= ladder[0].triangles - drawn.triangles;
-    const double own = i < world_from_part.size() ? largest_stretch(world_from_part[i]) : 1;
-    const double stretch = part.skin >= 0 ? std::max(own, joints) : own;
-    result.error_m = std::max(result.error_m, drawn.error_m > 0 ? drawn.error_m * stretch : 0);
+    if (drawn.error_m > 0)
+      result.error_m = std::max(result.error_m, drawn.error_m * stretch_of(part, i, layer, world_from_part));
   }
   return result;
 }

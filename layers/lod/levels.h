@@ -16,12 +16,14 @@
 
 #include "layers/layer.h"
 #include "layers/lod/simplify.h"
+#include "layers/part_box.h"
 
 namespace talisman::layers {
 
 struct LevelSet {
   std::vector<Ladder> ladders;          ///< by own mesh of the scene; no level: nothing is drawn with it
   std::vector<std::vector<int>> parts;  ///< by own part: itself, then those that stand for it, finest first
+  std::vector<MeshBox> boxes;           ///< by own mesh
 };
 
 /// The scene, which has none yet, with `levels`. Whoever changes its meshes or parts takes them away first, and makes them
@@ -46,6 +48,10 @@ struct LayerLevel {
 /// `world_from_part`: of each part's node, joints of skinned ones behind (LayerState).
 LayerLevel level_of(const Scene& scene, const Layer& layer, int level,
                     const std::vector<dmat4>& world_from_part);
+
+/// By how much lengths of part `i` of the layer grow at most.
+double stretch_of(const Part& part, std::size_t i, const Layer& layer,
+                  const std::vector<dmat4>& world_from_part);
 
 /// The layer with the parts of a level.
 Layer layer_at_level(const Scene& scene, Layer layer, int level);

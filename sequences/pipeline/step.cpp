@@ -159,7 +159,7 @@ void remember_renders(const Pipeline& pipeline, PipelineState& state, const Shad
       memory.predicted = predicts(pipeline);
       memory.frames_short_of_area = 0;
       decision.cost = cost_of(pipeline, state.layers, decision.layer, memory.placement);
-      lower_cost(pipeline, state, decision.layer, memory.level, decision.cost);
+      lower_cost(pipeline, state.layers[decision.layer], memory, decision.cost);
       look_up_shadow_maps(pipeline, state, maps, decision.layer, instant, report);
     }
     if (decision.action == Action::Refresh)
@@ -234,7 +234,7 @@ chunker::RenderResult draw_remembered(const Pipeline& pipeline, PipelineState& s
   for (const ShadowMapInstant& map : memory.maps)
     held.push_back({map.light, &instants.at(map.known, map.depicts_frame), map.resolution});
   const auto draw = draws_chunks_late(pipeline) ? &draw_layer_late : &draw_layer;
-  const Layer drawn = drawn_layer(pipeline, state.layers[layer], memory.level);
+  const Layer drawn = drawn_layer(pipeline, state.layers[layer], memory);
   return draw({pipeline, state.layers, state.shadow_maps, prepared, frame, held}, drawn, memory.placement);
 }
 

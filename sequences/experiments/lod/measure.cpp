@@ -28,7 +28,10 @@ struct LodSetting {
 LodSetting selected(const char* name, LodSelector by, double target_ms, regulator::RegulatorOptions options) {
   options.lod.by = by;
   options.policy = by == LodSelector::Optimise ? Policy::Budget : Policy::Reference;
+  // Measured only where there is a budget of time, and all rows have to be priced alike.
+  const double depth = std::max(1.0, options.budget.depth_complexity);
   options.budget = {};
+  options.budget.depth_complexity = depth;
   if (target_ms > 0) options.budget.ms = target_ms;
   return {name, target_ms, options};
 }

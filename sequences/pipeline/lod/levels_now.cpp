@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "layers/lod/levels.h"
+#include "layers/lod/member_levels.h"
 #include "regulator/lod/decide_lod.h"
 #include "regulator/lod/selectors.h"
 #include "regulator/profile.h"
@@ -38,17 +39,34 @@ double error_px(const layers::LayerLevel& level, const LayerState& now) {
   return layers::level_error_px(level.error_m, now.nearest_w_m, focal_px(now), most_tangent(now));
 }
 
+/// Are its levels rungs of allowed errors, chosen part by part?
+bool has_rungs(const Pipeline& pipeline, const Layer& layer) {
+  return pipeline.settings.regulator.lod.by == LodSelector::Optimise &&
+         layers::has_member_levels(pipeline.scene, layer);
+}
+
+layers::MemberLevels members_of(const Pipeline& pipeline, const Layer& layer, const LayerState& now,
+                                const layers::SpritePlacement& placement, int level) {
+  const auto chosen = has_rungs(pipeline, layer) ? &layers::members_at_rung : &layers::members_at_level;
+  return chosen(pipeline.scene, layer, now, placement, level);
+}
+
 /// A sprite that is drawn coarser, where that makes it cheaper.
 void add_lower_resolution(const Pipeline& pipeline, PipelineState& state, int frame,
                           const regulator::RegulatorOptions& options, LayerAssessment& layer) {
   if (options.budget.min_resolution > kLowerResolution) return;
-  regulator::LayerCost lower =
-      cost_of(pipeline, state.layers, layer.layer,
-              placement_at_resolution(pipeline, state, layer.layer, frame, kLowerResolution));
+  const layers::SpritePlacement placement =
+      placement_at_resolution(pipeline, state, layer.layer, frame, kLowerResolution);
+  regulator::LayerCost lower = cost_of(pipeline, state.layers, layer.layer, placement);
+  const Layer& drawn = state.layers[layer.layer];
   const std::size_t count = layer.levels.size();
   for (std::size_t k = 0; k < count; ++k) {
     LevelChoice way = layer.levels[k];
     lower.polygons = way.cost.polygons;
+    if (layers::has_member_levels(pipeline.scene, drawn))
+      lower.polygons =
+          members_of(pipeline, drawn, captured_states(pipeline, state, frame)[drawn.id], placement, way.level)
+              .polygons;
     if (!(regulator::drawing_ms(lower, options) < regulator::drawing_ms(way.cost, options))) continue;
     way.cost = lower;
     way.resolution = kLowerResolution;
@@ -73,20 +91,36 @@ void choose_by_size(const regulator::RegulatorOptions& options, double px_per_po
   layer.identical = false;
 }
 
+/// The ways to draw the layer at full resolution, by level.
+void add_levels(const Pipeline& pipeline, PipelineState& state, int frame, LayerAssessment& assessment) {
+  const Layer& layer = state.layers[assessment.layer];
+  const LayerState& now = captured_states(pipeline, state, frame)[layer.id];
+  const bool by_member = layers::has_member_levels(pipeline.scene, layer);
+  const int count = has_rungs(pipeline, layer) ? layers::kRungs : layers::level_count(pipeline.scene, layer);
+  for (int k = 0; k < count; ++k) {
+    LevelChoice way{k, 1, assessment.cost, 0};
+    if (by_member) {
+      const layers::MemberLevels members =
+          members_of(pipeline, layer, now, captured_placement(pipeline, state, layer.id, frame), k);
+      way.cost.polygons = members.polygons;
+      way.error_px = members.error_px;
+    } else {
+      const layers::LayerLevel level = layers::level_of(pipeline.scene, layer, k, now.world_from_part);
+      way.cost.polygons = level.polygons;
+      way.error_px = k == 0 ? 0 : error_px(level, now);
+    }
+    assessment.levels.push_back(way);
+  }
+}
+
 void assess_levels_of(const Pipeline& pipeline, PipelineState& state, int frame,
                       const regulator::RegulatorOptions& options, double px_per_polygon,
                       LayerAssessment& assessment) {
   const Layer& layer = state.layers[assessment.layer];
-  const LayerState& now = captured_states(pipeline, state, frame)[layer.id];
   const bool optimises = options.lod.by == LodSelector::Optimise;
-  const int count = layers::level_count(pipeline.scene, layer);
-  if (count < 2 && !optimises) return;
-  for (int k = 0; k < count; ++k) {
-    const layers::LayerLevel level = layers::level_of(pipeline.scene, layer, k, now.world_from_part);
-    LevelChoice way{k, 1, assessment.cost, k == 0 ? 0 : error_px(level, now)};
-    way.cost.polygons = level.polygons;
-    assessment.levels.push_back(way);
-  }
+  if (!optimises && layers::level_count(pipeline.scene, layer) < 2) return;
+  add_levels(pipeline, state, frame, assessment);
+  const int count = static_cast<int>(assessment.levels.size());
   assessment.level_then = std::min(state.memory[layer.id].level, count - 1);
   assessment.level_then_px = assessment.levels[static_cast<std::size_t>(assessment.level_then)].error_px;
   if (optimises)
@@ -125,15 +159,32 @@ void place_at_level(const Pipeline& pipeline, PipelineState& state, int frame,
   state.captured.at(frame).placements[static_cast<std::size_t>(decision.layer)] = placement;
 }
 
-Layer drawn_layer(const Pipeline& pipeline, const Layer& layer, int level) {
-  if (level == 0 || !layers::may_have_levels(layer)) return layer;
-  return layers::layer_at_level(pipeline.scene, layer, level);
+namespace {
+
+bool is_drawn_by_member(const Pipeline& pipeline, const Layer& layer, const LayerMemory& memory) {
+  return regulator::chooses_levels(pipeline.settings.regulator) && memory.then &&
+         layers::has_member_levels(pipeline.scene, layer) &&
+         (has_rungs(pipeline, layer) || layers::level_count(pipeline.scene, layer) > 1);
 }
 
-void lower_cost(const Pipeline& pipeline, const PipelineState& state, int layer, int level,
+}  // namespace
+
+Layer drawn_layer(const Pipeline& pipeline, const Layer& layer, const LayerMemory& memory) {
+  if (is_drawn_by_member(pipeline, layer, memory)) {
+    Layer drawn = layer;
+    drawn.parts = members_of(pipeline, layer, *memory.then, memory.placement, memory.level).parts;
+    return drawn;
+  }
+  if (memory.level == 0 || !layers::may_have_levels(layer)) return layer;
+  return layers::layer_at_level(pipeline.scene, layer, memory.level);
+}
+
+void lower_cost(const Pipeline& pipeline, const Layer& layer, const LayerMemory& memory,
                 regulator::LayerCost& cost) {
-  if (level == 0) return;
-  cost.polygons = layers::level_of(pipeline.scene, state.layers[layer], level, {}).polygons;
+  if (is_drawn_by_member(pipeline, layer, memory))
+    cost.polygons = members_of(pipeline, layer, *memory.then, memory.placement, memory.level).polygons;
+  else if (memory.level > 0)
+    cost.polygons = layers::level_of(pipeline.scene, layer, memory.level, {}).polygons;
 }
 
 double planned_drawing_ms(const FrameReport& report) {

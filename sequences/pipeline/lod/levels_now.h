@@ -2,7 +2,9 @@
 #pragma once
 
 /// The levels of detail of a run (layers/lod/levels.h): what each layer would cost at each of them in this frame, and how far
-/// off it would be (level_error_px, at the nearest depth of its bounds, at the corner of the display).
+/// off it would be (level_error_px, at the nearest depth of its bounds, at the corner of the display). A layer of several
+/// parts is drawn without those that its sprite does not show, and with Optimise each part has its own level
+/// (layers/lod/member_levels.h): what is called the layer's level is then the rung of allowed errors.
 ///
 /// A level changes only with a render. What is judged of an old sprite is its warp's error and what a render would take
 /// off the error of its level; what is said of a shown sprite is the warp's error and all of its level's: the bound of how far
@@ -30,10 +32,10 @@ void place_at_level(const Pipeline& pipeline, PipelineState& state, int frame,
                     const regulator::LayerDecision& decision);
 
 /// The layer as its sprite holds it.
-layers::Layer drawn_layer(const Pipeline& pipeline, const layers::Layer& layer, int level);
+layers::Layer drawn_layer(const Pipeline& pipeline, const layers::Layer& layer, const LayerMemory& memory);
 
-/// `cost` of a layer at its finest level becomes that at `level`.
-void lower_cost(const Pipeline& pipeline, const PipelineState& state, int layer, int level,
+/// `cost` of a layer at its finest level becomes that of what `memory` says is drawn.
+void lower_cost(const Pipeline& pipeline, const layers::Layer& layer, const LayerMemory& memory,
                 regulator::LayerCost& cost);
 
 /// After a frame is planned: what Feedback learns of it.

@@ -144,6 +144,68 @@ TEST(Levels, StaticDrawsWhatItPaysForAndFarBallsCoarser) {
   EXPECT_GE(levels.size(), 3u);
 }
 
+/// Balls of two rows and both sides of the camera's way, in layers of four.
+std::string balls_in_fours(const std::string& regulator) {
+  const std::string yaml = balls(regulator);
+  std::string layers = "layers:\n";
+  for (int i = 0; i < 12; i += 4) {
+    layers += "  - {name: four" + std::to_string(i) + ", parts: [";
+    for (int k = i; k < i + 4; ++k) layers += (k > i ? ", ball" : "ball") + std::to_string(k);
+    layers += "]}\n";
+  }
+  return yaml.substr(0, yaml.find("layers:\n")) + layers;
+}
+
+std::vector<FrameReport> played_in_fours(const std::string& regulator) {
+  const TemporaryFolder folder;
+  const Sequence sequence = load_sequence(folder.write("scene.yaml", balls_in_fours(regulator)));
+  return Playback(sequence, settings_of_run(sequence), true).all(sequence.frames);
+}
+
+/// What a sprite does not show is neither drawn nor paid for, and no pixel is another one.
+TEST(MemberLevels, LeaveOutWhatASpriteDoesNotShow) {
+  const auto whole = played_in_fours("policy: reference");
+  const auto shown = played_in_fours("policy: reference, lod: static, px_per_polygon: 0");
+  std::int64_t of_whole = 0, of_shown = 0;
+  for (std::size_t f = 0; f < whole.size(); ++f) {
+    EXPECT_EQ(hash_of(whole[f].picture), hash_of(shown[f].picture)) << f;
+    for (const regulator::LayerDecision& decision : whole[f].plan.decisions)
+      of_whole += decision.cost.polygons;
+    for (const regulator::LayerDecision& decision : shown[f].plan.decisions) {
+      of_shown += decision.cost.polygons;
+      if (decision.action != Action::Rerender) continue;
+      EXPECT_EQ(decision.level, 0);
+      EXPECT_EQ(shown[f].render_by_layer[static_cast<std::size_t>(decision.layer)].polygons_in,
+                decision.cost.polygons);
+    }
+  }
+  EXPECT_LT(of_shown, of_whole);
+}
+
+/// A layer of four balls, each of which has four levels at most: by rungs it fits where one level for all would not.
+TEST(MemberLevels, HoldTheBudgetAndDrawWhatTheyPayFor) {
+  const auto reports = played_in_fours("policy: budget, budget_ms: 1, lod: optimise");
+  std::set<int> rungs;
+  for (const FrameReport& report : reports) {
+    if (report.plan.lod->fits) {
+      EXPECT_LE(planned_drawing_ms(report), 1 + 1e-9) << report.frame;
+    }
+    for (const regulator::LayerDecision& decision : report.plan.decisions) {
+      if (decision.action != Action::Rerender) continue;
+      rungs.insert(decision.level);
+      EXPECT_EQ(report.render_by_layer[static_cast<std::size_t>(decision.layer)].polygons_in,
+                decision.cost.polygons);
+    }
+    for (const regulator::LayerAssessment& layer : report.assessments)
+      for (std::size_t k = 1; k < layer.levels.size(); ++k) {
+        if (layer.levels[k].resolution != layer.levels[k - 1].resolution) continue;
+        EXPECT_LE(layer.levels[k].cost.polygons, layer.levels[k - 1].cost.polygons);
+        EXPECT_GE(layer.levels[k].error_px, layer.levels[k - 1].error_px);
+      }
+  }
+  EXPECT_GE(rungs.size(), 2u);
+}
+
 /// A level changes only with a render, and what is said of a reused sprite is its warp's error and its level's.
 TEST(Levels, StayWithTheirSprites) {
   const auto reports = played("policy: threshold, geometric_px: 2, lod: static, px_per_polygon: 4");
