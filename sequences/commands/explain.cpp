@@ -107,7 +107,8 @@ int explain_sequence(const ExplainOptions& options, std::ostream& out) {
   if (explained.pictures) {
     const std::string folder =
         options.line.out.empty() ? "out/" + sequence.name + "-explain" : options.line.out;
-    out << "\n" << write_sheet(folder, layer, *explained.pictures) << "\n";
+    const std::string sheet = write_sheet(folder, layer, *explained.pictures);
+    out << "\n" << sheet << "\n";
   }
   return kSuccess;
 }

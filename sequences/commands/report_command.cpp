@@ -9,7 +9,8 @@
 namespace talisman::sequences {
 
 int run_report(const ReportOptions& options, std::ostream& out) {
-  out << "wrote " << write_report(options.folders, options.out, !options.no_thumbnails) << "\n";
+  const std::string file = write_report(options.folders, options.out, !options.no_thumbnails);
+  out << "wrote " << file << "\n";
   return kSuccess;
 }
 

@@ -97,7 +97,8 @@ class Tool : public ::testing::Test {
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.output;
     EXPECT_EQ(outcome.output.rfind("error: ", 0), 0u) << outcome.output;
-    EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
+    EXPECT_EQ(outcome.output.find('\n'), outcome.output.size() - 1)
+        << "one line, and nothing behind it: " << outcome.output;
     for (const std::string& part : parts)
       EXPECT_THAT(outcome.output, ::testing::HasSubstr(part)) << arguments;
   }

@@ -255,6 +255,7 @@ TEST_F(Tool, AccuracyOfTheRegulatorOnABareModel) {
       0);
   EXPECT_FALSE(fs::exists(folder_ / "bare/runs"));
   EXPECT_THAT(read("bare/regulator.html"), Not(HasSubstr("runs/")));
+  expect_bad_input("report nowhere", {"nowhere: is no folder"});
   expect_bad_input("accuracy --renderer cube.obj --no-report",
                    {"--no-report is about the runs behind --regulator, must come with it"});
   expect_bad_input("accuracy --regulator nothing", {"nothing"});
