@@ -25,7 +25,9 @@
 #ifdef __SANITIZE_ADDRESS__
 /// What a library of others loses (tests/sanitize/leaks) is told from our own by who asked for it: by the whole stack of an
 /// allocation, which the sanitizer else walks along frame pointers, and the libraries of a distribution have none.
-extern "C" const char* __asan_default_options() { return "fast_unwind_on_malloc=0"; }
+extern "C" __attribute__((visibility("default"))) const char* __asan_default_options() {
+  return "fast_unwind_on_malloc=0";
+}
 #endif
 
 namespace talisman::sequences {
