@@ -69,7 +69,7 @@ bool normalize(Column& column, double least) {
   return true;
 }
 
-/// PlacePairs of places, by coordinate.
+/// Where points were and where they are, by coordinate.
 struct PlacePairs {
   Column x, y, u, v;
 

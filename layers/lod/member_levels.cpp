@@ -16,15 +16,17 @@ namespace {
 /// Around the rectangle of a sprite, px: for what a filter reaches and for rounding.
 constexpr double kRim_px = 2;
 
+double focal_px(const LayerState& now) {
+  return now.view.display_px.y / (2 * std::tan(now.camera.fov_y_rad / 2));
+}
+
 /// What a sprite shows of the world, from its camera.
 class SpriteWindow {
  public:
   SpriteWindow(const LayerState& now, const SpritePlacement& placement)
       : camera_from_world_(glm::inverse(now.camera.world_from_camera)),
-        focal_px_(now.view.display_px.y / (2 * std::tan(now.camera.fov_y_rad / 2))),
+        focal_px_(focal_px(now)),
         middle_px_(dvec2(now.view.display_px) / 2.0) {
-    const double up = middle_px_.y / focal_px_, across = middle_px_.x / focal_px_;
-    most_tangent_ = std::sqrt(up * up + across * across);
     const double rim = kRim_px + glm::length(now.motion_px);
     const dvec2 size(placement.size_px);
     for (const dvec2& corner : {dvec2(0), dvec2(size.x, 0), dvec2(0, size.y), size}) {
@@ -60,87 +62,17 @@ class SpriteWindow {
     return seen;
   }
 
-  double px(double error_m, double nearest_m) const {
-    return error_m > 0 ? level_error_px(error_m, nearest_m, focal_px_, most_tangent_) : 0;
-  }
-
  private:
   dmat4 camera_from_world_;
   double focal_px_;
   dvec2 middle_px_;
-  double most_tangent_ = 0;
   dvec2 lo_{HUGE_VAL}, hi_{-HUGE_VAL};
 };
 
-struct Asked {
-  std::optional<int> level;  ///< of all; else a rung
-  int rung = 0;
-};
-
-/// The level of one part; -1: none, it is not drawn.
-struct PartChoice {
-  int level = 0;
-  double error_px = 0;
-};
-
-PartChoice chosen(const std::vector<LadderLevel>& ladder, const SpriteWindow& window,
-                  const SpriteWindow::Seen& seen, double stretch, const Asked& asked) {
-  const int coarsest = static_cast<int>(ladder.size()) - 1;
-  const auto error_px = [&](int level) {
-    return window.px(ladder[static_cast<std::size_t>(level)].error_m * stretch, seen.nearest_m);
-  };
-  if (asked.level) {
-    const int level = std::min(*asked.level, coarsest);
-    return {level, error_px(level)};
-  }
-  const bool is_last = asked.rung >= kRungs - 1;
-  const double allowed_px = is_last ? kLeftOut_px : kRungs_px[static_cast<std::size_t>(asked.rung)];
-  const double whole_px = window.px(seen.diagonal_m, seen.nearest_m);
-  const auto triangles = static_cast<double>(ladder[static_cast<std::size_t>(coarsest)].triangles);
-  const double left_out_px = allowed_px * (is_last ? 1 : std::min(1.0, std::sqrt(triangles / kDearPart)));
-  if (whole_px > 0 && whole_px <= left_out_px) return {-1, whole_px};
-  if (is_last) return {coarsest, error_px(coarsest)};
-  int level = coarsest;
-  while (level > 0 && error_px(level) > allowed_px) --level;
-  return {level, error_px(level)};
-}
-
-MemberLevels members(const Scene& scene, const Layer& layer, const LayerState& now,
-                     const SpritePlacement& placement, const Asked& asked) {
-  MemberLevels result{{}, layer.polygons, 0};
-  const SpriteWindow window(now, placement);
-  const LevelSet& levels = *scene.levels;
-  for (std::size_t i = 0; i < layer.parts.size(); ++i) {
-    const auto own = static_cast<std::size_t>(layer.parts[i]);
-    const Part& part = scene.parts[own];
-    const auto mesh = static_cast<std::size_t>(part.mesh);
-    const bool is_plain = !part.is_seam && part.mesh >= 0 && part.skin < 0 &&
-                          i < now.world_from_part.size() && levels.boxes[mesh].morphs.empty() &&
-                          !levels.boxes[mesh].rest.empty() && levels.boxes[mesh].rest != kEverywhere;
-    if (part.is_seam || part.mesh < 0 || levels.ladders[mesh].levels.empty()) {
-      result.parts.push_back(layer.parts[i]);
-      continue;
-    }
-    const std::vector<LadderLevel>& ladder = levels.ladders[mesh].levels;
-    SpriteWindow::Seen seen{false, now.nearest_w_m, HUGE_VAL};
-    if (is_plain) seen = window.look_at(levels.boxes[mesh].rest, now.world_from_part[i]);
-    PartChoice choice{-1, 0};
-    if (!seen.outside)
-      choice = chosen(ladder, window, seen, stretch_of(part, i, layer, now.world_from_part), asked);
-    result.polygons -= ladder[0].triangles;
-    result.error_px = std::max(result.error_px, choice.error_px);
-    if (choice.level < 0) continue;
-    const auto level = static_cast<std::size_t>(choice.level);
-    result.polygons += ladder[level].triangles;
-    result.parts.push_back(levels.parts[own][level]);
-  }
-  if (!result.parts.empty() || layer.parts.empty()) return result;
-  // A picture of nothing is still one of the layer.
-  const auto first = static_cast<std::size_t>(layer.parts[0]);
-  const auto& ladder = levels.ladders[static_cast<std::size_t>(scene.parts[first].mesh)].levels;
-  result.parts.push_back(levels.parts[first].back());
-  result.polygons += ladder.back().triangles;
-  return result;
+/// Is all that is drawn of the part inside its box, moved with it?
+bool has_box(const Part& part, std::size_t i, const LayerState& now, const MeshBox& box) {
+  return part.skin < 0 && i < now.world_from_part.size() && box.morphs.empty() && !box.rest.empty() &&
+         box.rest != kEverywhere;
 }
 
 }  // namespace
@@ -149,14 +81,90 @@ bool has_member_levels(const Scene& scene, const Layer& layer) {
   return scene.levels && may_have_levels(layer) && layer.parts.size() > 1;
 }
 
-MemberLevels members_at_rung(const Scene& scene, const Layer& layer, const LayerState& now,
-                             const SpritePlacement& placement, int rung) {
-  return members(scene, layer, now, placement, {std::nullopt, std::clamp(rung, 0, kRungs - 1)});
+ShownMembers::ShownMembers(const Scene& scene, const Layer& layer, const LayerState& now,
+                           const SpritePlacement& placement)
+    : scene_(&scene),
+      layer_(&layer),
+      focal_px_(focal_px(now)),
+      most_tangent_(glm::length(dvec2(now.view.display_px) / (2 * focal_px_))) {
+  const SpriteWindow window(now, placement);
+  for (std::size_t i = 0; i < layer.parts.size(); ++i) {
+    const Part& part = scene.parts[static_cast<std::size_t>(layer.parts[i])];
+    Member& member = members_.emplace_back();
+    if (part.is_seam || part.mesh < 0 || ladder_of(i).empty()) continue;
+    member.has_levels = true;
+    SpriteWindow::Seen seen{false, now.nearest_w_m, HUGE_VAL};
+    const MeshBox& box = scene.levels->boxes[static_cast<std::size_t>(part.mesh)];
+    if (has_box(part, i, now, box)) seen = window.look_at(box.rest, now.world_from_part[i]);
+    member.outside = seen.outside;
+    if (seen.outside) continue;
+    member.nearest_m = seen.nearest_m;
+    member.diagonal_m = seen.diagonal_m;
+    member.stretch = stretch_of(part, i, layer, now.world_from_part);
+  }
 }
 
-MemberLevels members_at_level(const Scene& scene, const Layer& layer, const LayerState& now,
-                              const SpritePlacement& placement, int level) {
-  return members(scene, layer, now, placement, {level, 0});
+double ShownMembers::error_px(double error_m, double nearest_m) const {
+  return error_m > 0 ? level_error_px(error_m, nearest_m, focal_px_, most_tangent_) : 0;
+}
+
+const std::vector<LadderLevel>& ShownMembers::ladder_of(std::size_t i) const {
+  const Part& part = scene_->parts[static_cast<std::size_t>(layer_->parts[i])];
+  return scene_->levels->ladders[static_cast<std::size_t>(part.mesh)].levels;
+}
+
+ShownMembers::Choice ShownMembers::at_level(std::size_t i, int level) const {
+  const std::vector<LadderLevel>& ladder = ladder_of(i);
+  const Member& member = members_[i];
+  const int drawn = std::min(level, static_cast<int>(ladder.size()) - 1);
+  return {drawn,
+          error_px(ladder[static_cast<std::size_t>(drawn)].error_m * member.stretch, member.nearest_m)};
+}
+
+ShownMembers::Choice ShownMembers::at_rung(std::size_t i, int rung) const {
+  const Member& member = members_[i];
+  const int coarsest = static_cast<int>(ladder_of(i).size()) - 1;
+  const bool is_last = rung >= kRungs - 1;
+  const double allowed_px = is_last ? kLeftOut_px : kRungs_px[static_cast<std::size_t>(rung)];
+  const double whole_px = error_px(member.diagonal_m, member.nearest_m);
+  const auto triangles = static_cast<double>(ladder_of(i).back().triangles);
+  const double left_out_px = allowed_px * (is_last ? 1 : std::min(1.0, std::sqrt(triangles / kDearPart)));
+  if (whole_px > 0 && whole_px <= left_out_px) return {-1, whole_px};
+  Choice choice = at_level(i, coarsest);
+  while (!is_last && choice.level > 0 && choice.error_px > allowed_px) choice = at_level(i, choice.level - 1);
+  return choice;
+}
+
+template <typename Choose>
+MemberLevels ShownMembers::chosen(const Choose& choose) const {
+  MemberLevels result{{}, layer_->polygons, 0};
+  const LevelSet& levels = *scene_->levels;
+  const auto draw = [&](std::size_t i, std::size_t level) {
+    result.polygons += ladder_of(i)[level].triangles;
+    result.parts.push_back(levels.parts[static_cast<std::size_t>(layer_->parts[i])][level]);
+  };
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    if (!members_[i].has_levels) {
+      result.parts.push_back(layer_->parts[i]);
+      continue;
+    }
+    result.polygons -= ladder_of(i)[0].triangles;
+    if (members_[i].outside) continue;
+    const Choice choice = choose(i);
+    result.error_px = std::max(result.error_px, choice.error_px);
+    if (choice.level >= 0) draw(i, static_cast<std::size_t>(choice.level));
+  }
+  // A picture of nothing is still one of the layer.
+  if (result.parts.empty() && !members_.empty()) draw(0, ladder_of(0).size() - 1);
+  return result;
+}
+
+MemberLevels ShownMembers::at_rung(int rung) const {
+  return chosen([this, rung = std::clamp(rung, 0, kRungs - 1)](std::size_t i) { return at_rung(i, rung); });
+}
+
+MemberLevels ShownMembers::at_level(int level) const {
+  return chosen([this, level](std::size_t i) { return at_level(i, level); });
 }
 
 }  // namespace talisman::layers

@@ -14,10 +14,12 @@
 /// What is morphed or skinned has no such box: it is drawn, and its depth is that of the layer.
 
 #include <array>
-#include <optional>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "layers/layer.h"
+#include "layers/lod/ladder.h"
 #include "layers/sprite_transform.h"
 
 namespace talisman::layers {
@@ -42,11 +44,40 @@ struct MemberLevels {
 /// parts.
 bool has_member_levels(const Scene& scene, const Layer& layer);
 
-/// `now`, `placement`: as the sprite is drawn. Cost: O(parts · levels).
-MemberLevels members_at_rung(const Scene& scene, const Layer& layer, const LayerState& now,
-                             const SpritePlacement& placement, int rung);
-/// The same with one level for all (layers/lod/levels.h): only what is outside is left out.
-MemberLevels members_at_level(const Scene& scene, const Layer& layer, const LayerState& now,
-                              const SpritePlacement& placement, int level);
+/// The parts of such a layer as its sprite shows them: looked at once, and asked at any number of levels. `scene` and `layer`
+/// outlive it.
+class ShownMembers {
+ public:
+  /// `now`, `placement`: as the sprite is drawn. Cost: O(parts).
+  ShownMembers(const Scene& scene, const Layer& layer, const LayerState& now,
+               const SpritePlacement& placement);
+
+  MemberLevels at_rung(int rung) const;  ///< clamped to 0 … kRungs - 1. Cost: O(parts · levels)
+  /// One level for all (layers/lod/levels.h): only what is outside is left out. Cost: O(parts).
+  MemberLevels at_level(int level) const;
+
+ private:
+  struct Member {
+    bool has_levels = false;  ///< else it is drawn as it is
+    bool outside = false;
+    double nearest_m = 0, diagonal_m = 0;  ///< of its box
+    double stretch = 1;
+  };
+  struct Choice {
+    int level = 0;  ///< -1: none, it is not drawn
+    double error_px = 0;
+  };
+  double error_px(double error_m, double nearest_m) const;
+  Choice at_level(std::size_t i, int level) const;
+  Choice at_rung(std::size_t i, int rung) const;
+  const std::vector<LadderLevel>& ladder_of(std::size_t i) const;
+  template <typename Choose>
+  MemberLevels chosen(const Choose& choose) const;
+
+  const Scene* scene_;
+  const Layer* layer_;
+  double focal_px_, most_tangent_;
+  std::vector<Member> members_;  ///< by part of the layer
+};
 
 }  // namespace talisman::layers

@@ -158,8 +158,7 @@ DecisionColumns level_columns() {
   return {
       computed<Row>("level", "level", "",
                     "with --lod: level of detail of the sprite shown, 0 is the finest; of several parts with "
-                    "optimise: rung "
-                    "of allowed errors; absent out of view",
+                    "optimise: rung of allowed errors; absent out of view",
                     [](const Row& r) {
                       return assessment(r).levels.empty() ? Value(Absent{}) : value_of(r.decision.level);
                     }),

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "layers/lod/levels.h"
 #include "layers/lod/member_levels.h"
@@ -45,10 +46,23 @@ bool has_rungs(const Pipeline& pipeline, const Layer& layer) {
          layers::has_member_levels(pipeline.scene, layer);
 }
 
-layers::MemberLevels members_of(const Pipeline& pipeline, const Layer& layer, const LayerState& now,
-                                const layers::SpritePlacement& placement, int level) {
-  const auto chosen = has_rungs(pipeline, layer) ? &layers::members_at_rung : &layers::members_at_level;
-  return chosen(pipeline.scene, layer, now, placement, level);
+layers::MemberLevels members_of(const Pipeline& pipeline, const Layer& layer,
+                                const layers::ShownMembers& shown, int level) {
+  return has_rungs(pipeline, layer) ? shown.at_rung(level) : shown.at_level(level);
+}
+
+/// As its sprite was drawn.
+layers::MemberLevels members_of(const Pipeline& pipeline, const Layer& layer, const LayerMemory& memory) {
+  return members_of(pipeline, layer, {pipeline.scene, layer, *memory.then, memory.placement}, memory.level);
+}
+
+/// Where levels are chosen part by part; else empty.
+std::optional<layers::ShownMembers> shown_members(const Pipeline& pipeline, PipelineState& state, int frame,
+                                                  const Layer& layer,
+                                                  const layers::SpritePlacement& placement) {
+  if (!layers::has_member_levels(pipeline.scene, layer)) return std::nullopt;
+  return layers::ShownMembers(pipeline.scene, layer, captured_states(pipeline, state, frame)[layer.id],
+                              placement);
 }
 
 /// A sprite that is drawn coarser, where that makes it cheaper.
@@ -59,14 +73,12 @@ void add_lower_resolution(const Pipeline& pipeline, PipelineState& state, int fr
       placement_at_resolution(pipeline, state, layer.layer, frame, kLowerResolution);
   regulator::LayerCost lower = cost_of(pipeline, state.layers, layer.layer, placement);
   const Layer& drawn = state.layers[layer.layer];
+  const auto shown = shown_members(pipeline, state, frame, drawn, placement);
   const std::size_t count = layer.levels.size();
   for (std::size_t k = 0; k < count; ++k) {
     LevelChoice way = layer.levels[k];
     lower.polygons = way.cost.polygons;
-    if (layers::has_member_levels(pipeline.scene, drawn))
-      lower.polygons =
-          members_of(pipeline, drawn, captured_states(pipeline, state, frame)[drawn.id], placement, way.level)
-              .polygons;
+    if (shown) lower.polygons = members_of(pipeline, drawn, *shown, way.level).polygons;
     if (!(regulator::drawing_ms(lower, options) < regulator::drawing_ms(way.cost, options))) continue;
     way.cost = lower;
     way.resolution = kLowerResolution;
@@ -95,13 +107,13 @@ void choose_by_size(const regulator::RegulatorOptions& options, double px_per_po
 void add_levels(const Pipeline& pipeline, PipelineState& state, int frame, LayerAssessment& assessment) {
   const Layer& layer = state.layers[assessment.layer];
   const LayerState& now = captured_states(pipeline, state, frame)[layer.id];
-  const bool by_member = layers::has_member_levels(pipeline.scene, layer);
+  const auto shown =
+      shown_members(pipeline, state, frame, layer, captured_placement(pipeline, state, layer.id, frame));
   const int count = has_rungs(pipeline, layer) ? layers::kRungs : layers::level_count(pipeline.scene, layer);
   for (int k = 0; k < count; ++k) {
     LevelChoice way{k, 1, assessment.cost, 0};
-    if (by_member) {
-      const layers::MemberLevels members =
-          members_of(pipeline, layer, now, captured_placement(pipeline, state, layer.id, frame), k);
+    if (shown) {
+      const layers::MemberLevels members = members_of(pipeline, layer, *shown, k);
       way.cost.polygons = members.polygons;
       way.error_px = members.error_px;
     } else {
@@ -172,7 +184,7 @@ bool is_drawn_by_member(const Pipeline& pipeline, const Layer& layer, const Laye
 Layer drawn_layer(const Pipeline& pipeline, const Layer& layer, const LayerMemory& memory) {
   if (is_drawn_by_member(pipeline, layer, memory)) {
     Layer drawn = layer;
-    drawn.parts = members_of(pipeline, layer, *memory.then, memory.placement, memory.level).parts;
+    drawn.parts = members_of(pipeline, layer, memory).parts;
     return drawn;
   }
   if (memory.level == 0 || !layers::may_have_levels(layer)) return layer;
@@ -182,7 +194,7 @@ Layer drawn_layer(const Pipeline& pipeline, const Layer& layer, const LayerMemor
 void lower_cost(const Pipeline& pipeline, const Layer& layer, const LayerMemory& memory,
                 regulator::LayerCost& cost) {
   if (is_drawn_by_member(pipeline, layer, memory))
-    cost.polygons = members_of(pipeline, layer, *memory.then, memory.placement, memory.level).polygons;
+    cost.polygons = members_of(pipeline, layer, memory).polygons;
   else if (memory.level > 0)
     cost.polygons = layers::level_of(pipeline.scene, layer, memory.level, {}).polygons;
 }

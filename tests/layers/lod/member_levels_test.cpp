@@ -48,7 +48,9 @@ struct Cubes {
     now.nearest_w_m = 9.5;
     placement.size_px = {100, 100};
   }
-  MemberLevels at_rung(int rung) const { return layers::members_at_rung(scene, layer, now, placement, rung); }
+  MemberLevels at_rung(int rung) const {
+    return layers::ShownMembers(scene, layer, now, placement).at_rung(rung);
+  }
 };
 
 using Parts = std::vector<int>;
@@ -86,11 +88,11 @@ TEST(MemberLevelsByHand, APartIsLeftOutWhereAllOfItIsNoLargerThanTheErrorAndOneI
 TEST(MemberLevelsByHand, OneLevelForAllLeavesOutWhatIsOutsideAlone) {
   const Cubes cubes;
   const MemberLevels coarse =
-      layers::members_at_level(cubes.scene, cubes.layer, cubes.now, cubes.placement, 2);
+      layers::ShownMembers(cubes.scene, cubes.layer, cubes.now, cubes.placement).at_level(2);
   EXPECT_EQ(coarse.parts, Parts({20}));
   EXPECT_EQ(coarse.polygons, 100);
   const MemberLevels beyond =
-      layers::members_at_level(cubes.scene, cubes.layer, cubes.now, cubes.placement, 9);
+      layers::ShownMembers(cubes.scene, cubes.layer, cubes.now, cubes.placement).at_level(9);
   EXPECT_EQ(beyond.parts, Parts({20})) << "no ladder has ten levels";
 }
 

@@ -163,11 +163,9 @@ std::string why_not_indifferent(PaperBench& bench) {
                none = all_slow(0.01, {4, 4}), eight = all_slow(delta_px, {8, 8}),
                none_eight = all_slow(0.01, {8, 8});
   return "the scale of its pictures is not printed, and ours, 12 px a unit, is smaller: with 1 px many "
-         "blocks rest for "
-         "4 or 8 frames. In the paper 1 px gives 1.46 to pairs of frames and nothing to fours, so most of "
-         "its "
-         "blocks move between a third of a pixel and one a frame. With the threshold at which our pairs gain "
-         "1.46, " +
+         "blocks rest for 4 or 8 frames. In the paper 1 px gives 1.46 to pairs of frames and nothing to "
+         "fours, so most of its blocks move between a third of a pixel and one a frame. With the threshold "
+         "at which our pairs gain 1.46, " +
          formatted(
              "%.2f px, fours go from %.2f, where nothing is in the second buffer, to %.2f and eights from "
              "%.2f to %.2f",
