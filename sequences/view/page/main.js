@@ -24,12 +24,12 @@ class LiveView {
     clearTimeout(this.timer);
     this.timer = setTimeout(() => this.plan(began), kWait_ms);
   }
-  // The plan arrives slice by slice; a newer setting ends the loop. An invalid one keeps what is there.
+  // The plan arrives slice by slice; a newer setting ends the loop. An invalid one keeps what is there. While a slice is painted, the next one is planned.
   async plan(began) {
     const generation = ++this.generation, {dataset} = document.body;
-    let run = null;
+    let run = null, asked = this.ask("/plan", {from: 0});
     while (!run?.complete) {
-      const response = await this.ask("/plan", {from: run ? run.planned : 0});
+      const response = await asked;
       if (generation !== this.generation || [0, 409].includes(response.status)) return;
       const answer = await response.json();
       if (generation !== this.generation) return;
@@ -37,7 +37,9 @@ class LiveView {
         this.controls.say(answer.error);
         return;
       }
-      if (run && answer.planned < run.planned) continue;  // another tab took its place: it is planned again
+      const isLost = run && answer.planned < run.planned;  // another tab took its place: it is planned again
+      if (isLost || answer.planned < answer.frames) asked = this.ask("/plan", {from: isLost ? run.planned : answer.planned});
+      if (isLost) continue;
       if (!run) {
         this.controls.say("");
         run = new LiveRun(this.about, answer);
