@@ -68,32 +68,39 @@ class Judge {
   LookaheadReport counts_;
 };
 
-/// How far the instants and the run may reach.
-regulator::FrameRun longest_run_of(const Pipeline& pipeline, int frame, int last, Judge& judge) {
+/// The last frame that is looked at from `frame`: of policies that know what comes the sequence's last one, or kFarthestLook_frames
+/// behind the instants. What is expected holds for a while only: a sprite of N frames ahead serves about as long after as before.
+int last_looked_at(const Pipeline& pipeline, int frame) {
   const regulator::RegulatorOptions& options = pipeline.settings.regulator;
-  const auto serves = [&judge](int instant, int shown_at) { return judge.serves(instant, shown_at); };
-  if (options.policy == regulator::Policy::Oracle)
-    return regulator::longest_run(frame, regulator::Instants{0, last}, last, serves);
-  if (!predicts(pipeline)) return regulator::longest_run(frame, options.lookahead.frames, last, serves);
-  // What is expected holds for a while only: a sprite of N frames ahead serves about as long after as before.
-  const std::int64_t horizon = frame + 2 * std::int64_t{options.lookahead.frames};
-  return regulator::longest_run(frame, options.lookahead.frames,
-                                static_cast<int>(std::min<std::int64_t>(last, horizon)), serves);
+  const int last = pipeline.settings.frames - 1;
+  if (options.policy == regulator::Policy::Oracle) return last;
+  const std::int64_t frames = options.lookahead.frames;
+  const std::int64_t beyond = predicts(pipeline) ? frames : kFarthestLook_frames;
+  return static_cast<int>(std::min<std::int64_t>(last, frame + frames + beyond));
 }
 
 }  // namespace
 
 regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
                                         LookaheadReport* counts) {
-  const int last = pipeline.settings.frames - 1;
-  TALISMAN_CHECK_LE(frame, last);  // Settings::frames is not the length of the sequence
+  TALISMAN_CHECK_LE(frame, pipeline.settings.frames - 1);  // it is not the length of the sequence
   Judge judge(pipeline, state, layer, frame);
-  const regulator::FrameRun run = longest_run_of(pipeline, frame, last, judge);
+  const auto serves = [&judge](int instant, int shown_at) { return judge.serves(instant, shown_at); };
+  const regulator::RegulatorOptions& options = pipeline.settings.regulator;
+  const int last = last_looked_at(pipeline, frame);
+  const regulator::FrameRun run =
+      options.policy == regulator::Policy::Oracle
+          ? regulator::longest_run(frame, regulator::Instants{0, last}, last, serves)
+          : regulator::longest_run(frame, options.lookahead.frames, last, serves);
   if (counts != nullptr) {
     counts->judged += judge.counts().judged;
     counts->evaluated += judge.counts().evaluated;
   }
   return run;
+}
+
+bool looks_no_farther(const Pipeline& pipeline, int frame, const regulator::FrameRun& run) {
+  return run.last == last_looked_at(pipeline, frame) && run.last < pipeline.settings.frames - 1;
 }
 
 }  // namespace talisman::sequences

@@ -8,7 +8,8 @@
 /// first and forward later. Whether a sprite of instant r serves frame f is judged by what `step` will judge
 /// when f comes: the same states, placement, fit, fiducials and thresholds. So the run that is promised is
 /// the run that comes true. The instants are confined to `lookahead_frames` (or are all of the sequence);
-/// how long a sprite will last is judged to the sequence's end.
+/// how long a sprite will last is judged kFarthestLook_frames beyond them, so that a long sequence takes no more memory than
+/// a short one: of instants that all serve so long the first is taken. Oracle judges to the sequence's end, and keeps what it looked at.
 ///
 /// With Prediction::Linear the frames ahead are those of layers/predict.h, made from the frame at hand and
 /// the one before, and a sprite's life is judged 2 N frames ahead. The sprite is drawn as of the *expected*
@@ -36,11 +37,16 @@
 
 namespace talisman::sequences {
 
+inline constexpr int kFarthestLook_frames = 250;  ///< 10 s at 25 frames a second
+
 /// The instant that serves the longest run from `frame` on, and that run. The layer is in view at `frame`.
 /// Cost: capture, placement and assessment (some µs) of each instant that may be chosen and of each frame of
 /// the runs that win; memory: the states of every frame looked at, some kB per layer.
 /// What was asked is added to `counts`.
 regulator::FrameRun choose_draw_instant(const Pipeline& pipeline, PipelineState& state, int layer, int frame,
                                         LookaheadReport* counts = nullptr);
+
+/// Does the run, chosen in `frame`, end where nobody looked farther, before the sequence does?
+bool looks_no_farther(const Pipeline& pipeline, int frame, const regulator::FrameRun& run);
 
 }  // namespace talisman::sequences

@@ -105,6 +105,7 @@ int decide_instant(const Pipeline& pipeline, PipelineState& state, int frame,
   decision.reason += "; rendered as of frame " + std::to_string(run.instant) + ", serves " +
                      std::to_string(run.first) + "-" + std::to_string(run.last);
   if (predicts(pipeline)) decision.reason += " if the motion goes on";
+  if (looks_no_farther(pipeline, frame, run)) decision.reason += " or longer";
   if (run.instant == frame) return frame;
   const LayerAssessment shown =
       assess_sprite(pipeline, state.layers, captured_states(pipeline, state, run.instant)[decision.layer],

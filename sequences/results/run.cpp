@@ -24,6 +24,7 @@
 #include "sequences/results/decision_lines.h"
 #include "sequences/results/exports/sprite_channels.h"
 #include "sequences/results/kept_pictures.h"
+#include "sequences/results/memory/memory_need.h"
 #include "sequences/results/report/changes.h"
 #include "sequences/results/run_folder.h"
 #include "sequences/results/run_identity.h"
@@ -260,6 +261,8 @@ class Runner {
 
 RunOutcome run(const Sequence& sequence, const Settings& settings, const RunOptions& options,
                const std::atomic<bool>& stop) {
+  if (const std::string words = memory_words(sequence, settings, options); !words.empty())
+    std::fprintf(stderr, "warning: %s\n", words.c_str());
   Runner runner(sequence, settings, options);
   Progress progress(options.progress, options.plan_only ? "planned" : "rendered",
                     options.last_frame - options.first_frame + 1, runner.frames_kept());

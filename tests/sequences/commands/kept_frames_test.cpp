@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a run keeps: pictures that are still what was written, results that outlast a video's failure, and no more memory
 // and lines than a long run can have.
-#include <sys/resource.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "tests/sequences/commands/peak_memory.h"
 #include "tests/sequences/commands/tool.h"
 
 namespace talisman {
@@ -134,23 +133,6 @@ TEST_F(KeptFrames, OfExperimentsWithoutAPlotterAreNotEvenMeasured) {
   }
 }
 
-/// The largest resident memory of the tool, kB.
-long memory_of(const std::string& tool, const std::vector<std::string>& arguments) {
-  const pid_t child = ::fork();
-  if (child == 0) {
-    std::vector<char*> argv{const_cast<char*>(tool.c_str())};
-    for (const std::string& a : arguments) argv.push_back(const_cast<char*>(a.c_str()));
-    argv.push_back(nullptr);
-    ::execv(tool.c_str(), argv.data());
-    ::_exit(127);
-  }
-  int status = 0;
-  rusage used{};
-  ::wait4(child, &status, 0, &used);
-  EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
-  return used.ru_maxrss;
-}
-
 // Every frame left 2 kB in memory: a gigabyte and more for a million.
 TEST_F(KeptFrames, OfALongPlanTakeTheMemoryOfAShortOne) {
   if (kIsSanitized) GTEST_SKIP() << "freed memory is kept for a while by the sanitizer";
@@ -159,10 +141,14 @@ TEST_F(KeptFrames, OfALongPlanTakeTheMemoryOfAShortOne) {
     text.replace(text.find("frames: 40\nfps: 1"), 17, std::string("frames: ") + frames + "\nfps: 30");
     write(name, text);
   }
-  for (const std::string policy : {"threshold", "hold", "interpolate"}) {
+  for (const std::string policy :
+       {"reference", "direct", "threshold", "hold", "interpolate", "lookahead", "predictive", "budget"}) {
     const auto plan = [&](const std::string& name) {
-      return memory_of(tool(), {"plan", path(name), "--policy", policy, "--size", "64x48", "--decisions",
-                                "changed", "--quiet", "--threads", "1", "--out", path("o")});
+      std::vector<std::string> words{"plan",      path(name),    "--policy", policy,    "--size",
+                                     "64x48",     "--decisions", "changed",  "--quiet", "--no-report",
+                                     "--threads", "1",           "--out",    path("o")};
+      if (policy == "budget") words.push_back("--budget-ms=1");
+      return tests::peak_memory_kB(tool(), words);
     };
     const long few = plan("short.yaml"), many = plan("long.yaml");
     EXPECT_LT(static_cast<double>(many), 1.05 * static_cast<double>(few)) << policy;

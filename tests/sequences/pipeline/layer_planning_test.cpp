@@ -6,6 +6,7 @@
 
 #include "regulator/policies.h"
 #include "sequences/pipeline/draw_instant.h"
+#include "sequences/pipeline/kept_frames.h"
 #include "sequences/pipeline/step.h"
 #include "tests/support/scenes.h"
 
@@ -67,6 +68,50 @@ TEST(StatesAt, ARunKeepsFewFramesInMemoryUnlessItLooksAhead) {
       EXPECT_LE(state.captured.size(), 2u) << frame;
     }
   }
+}
+
+TEST(StatesAt, AreKeptAsFarAsIsLookedAheadHoweverLongTheSequenceIs) {
+  Planning p;
+  p.settings.frames = 100'000;
+  p.settings.regulator.policy = regulator::Policy::Lookahead;
+  p.settings.regulator.lookahead.frames = 4;
+  // One sprite serves as long as it is looked at.
+  regulator::Thresholds& thresholds = p.settings.regulator.thresholds;
+  thresholds.geometric_px = 1e6;
+  thresholds.magnification = thresholds.minification = thresholds.anisotropy = thresholds.photometric = 0;
+  thresholds.uncovered_px = -1;
+  const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
+  PipelineState state(pipeline);
+  const std::size_t most = most_frames_kept(p.settings.regulator, p.settings.frames);
+  EXPECT_EQ(most, 255u) << "now, four instants, and 250 frames that the last of them may serve";
+  for (int frame = 0; frame < 3; ++frame) {
+    begin_frame(pipeline, state, frame);
+    const regulator::FrameRun run = choose_draw_instant(pipeline, state, kCube, frame);
+    EXPECT_EQ(run.last, frame + 4 + kFarthestLook_frames);
+    EXPECT_TRUE(looks_no_farther(pipeline, frame, run));
+    EXPECT_LE(state.captured.size() + state.forgotten.size(), most + 1);
+  }
+  EXPECT_EQ(most_frames_kept(p.settings.regulator, 48), 48);
+  p.settings.regulator.policy = regulator::Policy::Oracle;
+  EXPECT_EQ(most_frames_kept(p.settings.regulator, 100'000), 100'000) << "any of them may be asked for again";
+}
+
+TEST(BytesOf, AKeptFrameAreThoseOfItsLists) {
+  Planning p;
+  const Pipeline pipeline = make_pipeline(p.scene, p.layers, p.settings);
+  PipelineState state(pipeline);
+  CapturedFrame frame;
+  const auto empty = bytes_of(frame);
+  EXPECT_EQ(empty, static_cast<std::int64_t>(sizeof frame));
+  frame.states.resize(2);
+  frame.states[1].clip_points.resize(3);
+  frame.states[1].traces.resize(1);
+  frame.states[1].traces[0].places.resize(5);
+  EXPECT_EQ(bytes_of(frame) - empty,
+            static_cast<std::int64_t>(2 * sizeof(layers::LayerState) + 3 * sizeof(layers::dvec4) +
+                                      sizeof(layers::ShadeTrace) + 5 * sizeof(layers::dvec3)));
+  captured_states(pipeline, state, 3);
+  EXPECT_GT(bytes_of(state.captured.at(3)), empty);
 }
 
 TEST(PlacementAt, IsTheSameWhenAskedAgain) {
