@@ -18,7 +18,6 @@ namespace {
 
 constexpr int kSampled = 4;
 constexpr std::int64_t kTexel_bytes = sizeof(chunker::Texel), kPicture_bytes = 11, kBuffer_bytes = 8;
-constexpr double kGiga = 1e9;
 
 std::int64_t pixels_of(const Settings& settings) {
   return std::int64_t{settings.view.display_px.x} * settings.view.display_px.y;
@@ -75,7 +74,12 @@ std::int64_t at_most(const Sequence& sequence, const Settings& settings, const R
          most_frames_kept(settings.regulator, settings.frames) * layers * kState_bytes;
 }
 
-std::string gigabytes(std::int64_t bytes) { return formatted("%.3g GB", static_cast<double>(bytes) / kGiga); }
+/// "12.1 GB", "255 MB".
+std::string in_words(std::int64_t bytes) {
+  constexpr double kGiga = 1e9, kMega = 1e6;
+  const double value = static_cast<double>(bytes);
+  return value >= kGiga ? formatted("%.3g GB", value / kGiga) : formatted("%.0f MB", value / kMega);
+}
 
 }  // namespace
 
@@ -95,10 +99,10 @@ MemoryNeed memory_need(const Sequence& sequence, const Settings& settings, const
 std::string memory_warning(const MemoryNeed& need, std::int64_t free_bytes) {
   const std::int64_t more = need.total() - need.content;  // that is held already
   if (more <= free_bytes) return {};
-  const std::string words = "the run needs some " + gigabytes(more) + " of memory (sprites " +
-                            gigabytes(need.sprites) + ", pictures " + gigabytes(need.pictures) +
-                            ", frames looked at ahead " + gigabytes(need.kept_frames) + "), and " +
-                            gigabytes(free_bytes) + " are free";
+  const std::string words = "the run needs some " + in_words(more) + " of memory (sprites " +
+                            in_words(need.sprites) + ", pictures " + in_words(need.pictures) +
+                            ", frames looked at ahead " + in_words(need.kept_frames) + "), and " +
+                            in_words(free_bytes) + " are free";
   if (more / 2 > free_bytes)
     throw InputError(words +
                      ", rule: at most twice what is free; a smaller --size, fewer --frames at a time");
@@ -115,7 +119,7 @@ std::string memory_words(const Sequence& sequence, const Settings& settings, con
   const std::string warning = free ? memory_warning(need, *free) : "";
   if (!warning.empty() || !is_oracle || need.kept_frames <= kMuch_bytes) return warning;
   return "policy oracle keeps each frame that it looks at, " + std::to_string(need.frame) + " bytes: up to " +
-         gigabytes(need.kept_frames) + " of memory";
+         in_words(need.kept_frames) + " of memory";
 }
 
 }  // namespace talisman::sequences

@@ -24,8 +24,8 @@ TEST(MemoryWarning, IsSaidWhereTheEstimateIsMoreThanWhatIsFreeAndRefusedWhereHal
   need.pictures = 30 * kMB;
   need.kept_frames = 10 * kMB;
   EXPECT_EQ(memory_warning(need, 100 * kMB), "");
-  EXPECT_THAT(memory_warning(need, 99 * kMB), HasSubstr("some 0.1 GB"));
-  EXPECT_THAT(memory_warning(need, 50 * kMB), HasSubstr("0.05 GB are free"));
+  EXPECT_THAT(memory_warning(need, 99 * kMB), HasSubstr("some 100 MB"));
+  EXPECT_THAT(memory_warning(need, 50 * kMB), HasSubstr("50 MB are free"));
   EXPECT_THROW(memory_warning(need, 49 * kMB), InputError);
   EXPECT_THROW(memory_warning(need, 0), InputError);
 }
