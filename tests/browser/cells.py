@@ -60,7 +60,7 @@ selection.set({frame: arguments[0], layer: arguments[1]});
 const cells = {};
 for (const td of document.querySelectorAll('#properties td[data-column]')) {
   const data = td.querySelector('data');
-  cells[td.dataset.column] = data ? data.value : td.textContent === '–' ? null : td.textContent;
+  cells[td.dataset.column] = data ? data.value : ['–', 'out of view'].includes(td.textContent) ? null : td.textContent;
 }
 return {cells, why: document.querySelector('#properties .why').textContent};
 """

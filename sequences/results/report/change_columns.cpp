@@ -22,7 +22,9 @@ std::vector<Column<Change>> columns_of_changes() {
                 "geometric error of the old sprite: `warp_geometric_px` of its decision, of the policy "
                 "`hold` `held_geometric_px`",
                 [](const C& c) { return c.geometric_px; }),
-      of_change("camera_px", "camera_px", "px", "the same, had only the camera changed since",
+      of_change("camera_px", "camera_px", "px",
+                "the same, had only the camera changed since; null, here and below: the layer would then not "
+                "be in view",
                 [](const C& c) { return c.camera_px; }),
       of_change("own_motion_px", "own_motion_px", "px", "had only the layer's own parts moved",
                 [](const C& c) { return c.own_motion_px; }),

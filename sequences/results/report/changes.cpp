@@ -107,9 +107,10 @@ class OldSprite {
                                                                          : assessment.fiducials.geometric.px;
   }
 
-  /// Were the scene like that now.
-  double error_in(const SceneFrame& frame) const {
+  /// Were the scene like that now; empty: it would not be in view.
+  std::optional<double> error_in(const SceneFrame& frame) const {
     const LayerState now = state_in(pipeline_, layers_, assessment_.layer, frame, has_shades_);
+    if (!now.touches_display) return std::nullopt;
     return error_of(pipeline_,
                     assess_sprite(pipeline_, layers_, then_, {}, now, assessment_.frames_since_render));
   }
@@ -146,7 +147,7 @@ void set_amounts(const Pipeline& pipeline, const LayerTable& layers,
   const bool has_shades = assessment.fiducials.shade.px > 0;
   struct Cause {
     std::optional<SceneFrame> frame;
-    double& px;
+    std::optional<double>& px;
   };
   Cause causes[] = {{with_camera(then, now), change.camera_px},
                     {with_nodes(then, now, own, true), change.own_motion_px},
@@ -158,7 +159,10 @@ void set_amounts(const Pipeline& pipeline, const LayerTable& layers,
   if (acted > 1) sprite.emplace(pipeline, layers, assessment, then);
   for (const Cause& cause : causes)
     if (cause.frame) cause.px = sprite ? sprite->error_in(*cause.frame) : change.geometric_px;
-  change.separable = std::fabs(change.sum_px() - change.geometric_px) <= kSumTolerance * change.geometric_px;
+  const bool is_whole =
+      std::all_of(std::begin(causes), std::end(causes), [](const Cause& c) { return c.px.has_value(); });
+  change.separable =
+      is_whole && std::fabs(change.sum_px() - change.geometric_px) <= kSumTolerance * change.geometric_px;
 }
 
 }  // namespace

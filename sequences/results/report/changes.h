@@ -12,7 +12,7 @@
 ///
 ///   separable    |Σ E(c) - E| ≤ kSumTolerance · E
 ///
-/// Errors are lengths: two causes may cancel out (a camera that goes along) or, in perspective, do more together than
+/// A cause that alone would have moved the layer out of view has no E(c): the old sprite would not be looked at. Errors are lengths: two causes may cancel out (a camera that goes along) or, in perspective, do more together than
 /// one by one. Then the amounts are what each would have done alone, and no shares of E.
 ///
 /// One cause alone has all of E, and nothing is computed; else a fit for each cause that has acted.
@@ -36,10 +36,15 @@ struct Change {
   std::string layer;
   int since_frame = 0;      ///< the instant that the old sprite shows
   double geometric_px = 0;  ///< E
-  double camera_px = 0, own_motion_px = 0, light_px = 0, other_layers_px = 0;  ///< E(c)
+  /// E(c); empty: alone it would have moved the layer out of view.
+  std::optional<double> camera_px = 0, own_motion_px = 0, light_px = 0, other_layers_px = 0;
   bool separable = false;
 
-  double sum_px() const { return camera_px + own_motion_px + light_px + other_layers_px; }
+  /// Of those that there are.
+  double sum_px() const {
+    return camera_px.value_or(0) + own_motion_px.value_or(0) + light_px.value_or(0) +
+           other_layers_px.value_or(0);
+  }
 };
 
 /// Its first kChangeKeys columns, frame and layer, say which decision a line belongs to.

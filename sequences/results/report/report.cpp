@@ -91,7 +91,7 @@ std::string layers_table(const ReportRun& run, const std::string& suffix) {
                     number_element(layer->max_geometric_px),
                     layer->frame_of_max >= 0 ? std::to_string(layer->frame_of_max) : ""});
   }
-  std::string caption = "Layers, the dearest first";
+  std::string caption = "Layers, the most expensive first";
   if (layers.size() > kMostRows) caption += formatted(": %zu of %zu", kMostRows, layers.size());
   return table_of_run("layers", suffix, caption,
                       {"layer", "mostly drawn for", "renders", "reuses", "rate %", "polygons", "texels",

@@ -49,7 +49,7 @@ std::string dearest_layer(const ReportRun& run) {
     all += layer.pixels;
     if (!dearest || layer.pixels > dearest->pixels) dearest = &layer;
   }
-  return dearest && all > 0 ? "; " + dearest->name + " is the dearest layer, " +
+  return dearest && all > 0 ? "; " + dearest->name + " is the most expensive layer, " +
                                   percent_of(dearest->pixels, all) + " % of these texels"
                             : std::string();
 }
@@ -61,7 +61,8 @@ std::string modelled_ms(const ReportRun& run) {
       formatted("%.3g ms for drawing (reference %.3g ms)", sums.modelled_drawing_ms / sums.frames,
                 sums.modelled_reference_ms / sums.frames);
   if (text_in(run.run, "kind") == "plan") return "modelled " + drawing + " a frame";
-  return formatted("modelled %.3g ms a frame; as planned, ", sums.modelled_ms / sums.frames) + drawing;
+  return formatted("modelled %.3g ms a frame as drawn; as planned, ", sums.modelled_ms / sums.frames) +
+         drawing;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 class LiveTable extends Table {
   constructor(columns) {
     super({rows: 0, columns: columns.map((column) => ({...column, values: []}))}, "");
+    this.loaded = true;
   }
   has(name) {
     return this.columns.has(name);

@@ -35,6 +35,7 @@ class Curves {
     Object.assign(this, {box, map, key: "cost"});
     // Over the curves, so that another frame does not draw them anew.
     this.here = element("div", {id: "curve-mark", "aria-hidden": "true"});
+    box.addEventListener("click", (event) => { if (this.graph) this.choose(event); });
     map.moved.push((shown) => {
       if (this.graph) this.graph.updateOptions({dateWindow: [shown.from, shown.to]});
     });
@@ -50,7 +51,7 @@ class Curves {
     this.graph = new Dygraph(this.box, curveRows(run, this.key), {
       labels: ["frame", ...names], colors: [color("geometric"), color("policy"), color("visibility"), color("sampling")],
       dateWindow: [this.map.shown.from, this.map.shown.to], strokeWidth: 1.2, axisLineColor: css("--line"), gridLineColor: css("--line"),
-      axisLabelFontSize: 11, rightGap: 0, includeZero: true, legend: "always", labelsDiv: document.getElementById("curve-legend"),
+      axisLabelFontSize: 11, rightGap: 0, includeZero: true, yRangePad: 9, legend: "always", labelsDiv: document.getElementById("curve-legend"),
       interactionModel: {}, animatedZooms: false, height: 110, width: this.map.width,
       axes: {y: {axisLabelWidth: narrow - 6, pixelsPerLabel: 28, axisLabelFormatter: shortNumber}, x: {drawAxis: false, drawGrid: false}},
       axisLabelColor: quiet,
@@ -59,6 +60,11 @@ class Curves {
       drawCallback: (graph) => this.placeMark(graph),
     });
     this.box.append(this.here);
+  }
+  // A click chooses the frame below it.
+  choose(event) {
+    const run = this.map.run, frame = Math.floor(this.graph.toDataXCoord(event.clientX - this.box.getBoundingClientRect().left));
+    if (Number.isFinite(frame)) selection.set({frame: Math.max(run.first, Math.min(run.last, frame))});
   }
   placeMark(graph) {
     const x = graph.toDomXCoord(selection.frame), wide = Math.max(2, graph.toDomXCoord(selection.frame + 1) - x);

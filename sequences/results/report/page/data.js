@@ -54,6 +54,7 @@ class Table {
     this.rows = json.rows;
     this.seriesName = seriesName;
     this.columns = new Map(json.columns.map((column) => [column.name, column]));
+    this.loaded = false;
   }
   has(name) {
     const column = this.columns.get(name);
@@ -83,6 +84,7 @@ class Table {
       await this.need([name]);
       await new Promise((done) => setTimeout(done));
     }
+    this.loaded = true;
   }
   // A number, a text, or null.
   value(name, row) {
@@ -97,7 +99,7 @@ class Table {
     if (!column.numbers || !word.includes("\u0001")) return word;
     return word.replace(/\u0001([a-z])/g, (mark, letter) => {
       const value = this.value(column.numbers[letter.charCodeAt(0) - 97], row);
-      return value === null ? mark : String(Number(value.toPrecision(4)));
+      return value === null ? "…" : String(Number(value.toPrecision(4)));
     });
   }
 }

@@ -6,12 +6,18 @@ function choice(label, words, chosen, change) {
   return element("label", {}, `${label} `, select);
 }
 
-function legend() {
-  return element("ul", {class: "legend"}, ...kKinds.map((kind) => {
+// What the colours of the map mean: kinds of decisions, or steps of the error up to `most` px.
+function legend(mode, most) {
+  const entry = (background, words) => {
     const swatch = element("span", {class: "swatch"});
-    swatch.style.background = `var(--kind-${kind})`;
-    return element("li", {}, swatch, kKindWords[kind]);
-  }));
+    swatch.style.background = background;
+    return element("li", {}, swatch, words);
+  };
+  const px = (k) => Number(((k * most) / 7).toPrecision(3));
+  if (mode === "error") return [0, 1, 2, 3, 4, 5, 6].map((k) => entry(`var(--step-${k})`, k === 6 ? `${px(6)} to ${px(7)} px` : `from ${px(k)}`));
+  if (mode === "difference")
+    return [["var(--both)", "drawn in both"], [color("geometric"), "drawn here alone"], [color("policy"), "drawn there alone"], [color("reuse"), "drawn in neither"]].map((e) => entry(...e));
+  return kKinds.map((kind) => entry(`var(--kind-${kind})`, kKindWords[kind]));
 }
 
 // The elements of the instrument, by name.
@@ -24,9 +30,9 @@ function layOut(runs) {
                  properties: element("section", {id: "properties", class: "panel", "aria-label": "decision", "aria-live": "polite"}),
                  spans: element("section", {id: "spans", class: "panel scrolls", tabindex: "0", "aria-label": "decisions of the layer"}),
                  goTo: element("input", {type: "number", id: "go-to", min: runs[0].first, max: runs[0].last, step: 1}),
-                 curveTools: element("div", {class: "tools"})};
+                 legend: element("ul", {class: "legend"}), curveTools: element("div", {class: "tools"})};
   document.getElementById("instrument").append(
-    element("div", {class: "left"}, parts.tools, element("div", {class: "map"}, canvas), legend(), parts.curveTools, parts.curve, parts.spans),
+    element("div", {class: "left"}, parts.tools, element("div", {class: "map"}, canvas), parts.legend, parts.curveTools, parts.curve, parts.spans),
     element("div", {class: "right"}, parts.frame, parts.properties, parts.layers));
   return parts;
 }
@@ -41,11 +47,12 @@ function addTools(parts, runs, map, curves) {
     if (event.key === "Enter" && map.rows.length > 0) selection.set({layer: map.run.layers[map.rows[0]]});
   };
   parts.goTo.addEventListener("change", () => selection.set({frame: Math.max(map.run.first, Math.min(map.run.last, Math.round(Number(parts.goTo.value))))}));
-  const middle = () => (map.shown.from + map.shown.to) / 2;
+  parts.legend.replaceChildren(...legend(map.mode, 0));
+  const middle = () => (selection.frame >= map.shown.from && selection.frame < map.shown.to ? selection.frame + 0.5 : (map.shown.from + map.shown.to) / 2);
   parts.tools.append(
     ...(runs.length > 1 ? [choice("run", {0: `A: ${runs[0].folder}`, 1: `B: ${runs[1].folder}`}, "0", (v) => selection.set({run: Number(v)}))] : []),
     choice("rows by", {cost: "cost", rate: "rate", error: "error", order: "order", name: "name", group: "group of names"}, "cost", (v) => { map.by = v; again(); }),
-    choice("colours", modes, "reason", (v) => { map.mode = v; again(); }),
+    choice("colours", modes, "reason", (v) => { map.mode = v; again(); parts.legend.replaceChildren(...legend(v, map.largestError())); }),
     element("label", {}, "find ", element("input", {type: "search", id: "find", size: "10", oninput: (e) => { map.filter = e.target.value; again(); }, onkeydown: chooseFirst})),
     element("label", {}, "frame ", parts.goTo),
     element("span", {class: "buttons"}, zoom("−", "see more frames", () => map.zoom(2, middle())), zoom("+", "see fewer frames", () => map.zoom(0.5, middle())),
@@ -69,7 +76,11 @@ class Instrument {
     this.spans = new SpansTable(this.parts.spans);
     this.drawnRun = selection.run;
     selection.listeners.push(() => this.draw());
-    addEventListener("hashchange", () => selection.set(selection.fromAddress(runs)));
+    addEventListener("hashchange", () => {
+      selection.set(selection.fromAddress(runs));
+      const box = this.parts.canvas.getBoundingClientRect();
+      if (box.bottom < 0 || box.top > innerHeight) this.parts.canvas.scrollIntoView({block: "center"});
+    });
     new ResizeObserver(() => this.resize()).observe(this.parts.canvas.parentElement);
     setUpTheme(() => this.redrawAll());
     matchMedia("print").addEventListener("change", () => this.redrawAll());

@@ -53,9 +53,7 @@ class TimelineMap {
       };
     }
     if (this.mode === "error") {
-      const errors = run.column("geometric_px").values;
-      let most = 1e-9;
-      if (errors) for (const e of errors) if (e > most) most = e;
+      const errors = run.column("geometric_px").values, most = this.largestError();
       const steps = [0, 1, 2, 3, 4, 5, 6].map((k) => pixel(css(`--step-${k}`)));
       const drop = pixel(color("drop")), merged = pixel(color("merged"));
       return (row) => {
@@ -65,6 +63,12 @@ class TimelineMap {
       };
     }
     return (row) => byKind[run.kinds[row]];
+  }
+  // The largest of all layers and frames, px; above 0.
+  largestError() {
+    let most = 1e-9;
+    for (const e of this.run.column("geometric_px").values ?? []) if (e > most) most = e;
+    return most;
   }
   get rowHeight() {
     return Math.max(this.rows.length > 200 ? 8 : 11, Math.min(18, Math.floor((this.height - kAxis_px) / Math.max(1, this.rows.length))));
@@ -146,6 +150,7 @@ class TimelineMap {
     c.fillStyle = css("--quiet");
     c.font = `11px ${css("--sans")}`;
     c.textBaseline = "top";
+    if (this.rows.length === 0) c.fillText("no layer has that in its name", this.labels + 4, y + 24);
     for (let f = Math.ceil(this.shown.from / step) * step; f < this.shown.to; f += step) {
       const x = this.x(f);
       c.fillRect(x, y, 1, 4);

@@ -53,14 +53,17 @@ class PropertiesPanel {
   draw() {
     const rows = this.rows(), several = this.runs.length > 1;
     const parts = [element("h2", {}, element("bdi", {}, selection.layer), ` in frame ${selection.frame}`)];
+    if (selection.refused) parts.push(element("p", {class: "note", role: "status"}, element("bdi", {}, selection.refused)));
     this.runs.forEach((run, k) => {
       const row = rows[k], decision = run.value("decision", row);
-      const words = row < 0 ? "No line: the layer is not there in this frame." : `${kDone[decision]}: ${run.value("reason", row) ?? ""}`;
+      const reason = run.value("reason", row) ?? "", done = reason.startsWith("first_appearance") ? "Drawn" : kDone[decision];
+      const words = row < 0 ? "No line: the layer is not there in this frame." : `${done}: ${reason}`;
       const swatch = element("span", {class: "swatch", "aria-hidden": "true"});
       swatch.style.background = color(run.kind(row));
       parts.push(element("p", {class: "why"}, swatch, several ? element("b", {}, `${"AB"[k]} `) : "", element("bdi", {}, words)));
     });
-    parts.push(this.fiducials(rows), this.changes(rows), this.rest(rows));
+    const isLoaded = this.runs.every((run) => run.decisions.loaded);
+    parts.push(...(isLoaded ? [this.fiducials(rows), this.changes(rows), this.rest(rows)] : [element("p", {class: "note", role: "status"}, "The rest of the run is being unpacked …")]));
     this.box.replaceChildren(...parts);
   }
   head(...words) {
@@ -92,12 +95,13 @@ class PropertiesPanel {
       const why = this.runs.every((run) => !run.changes) ? "not known (no changes.jsonl)" : "nothing that moves it";
       return at("warp_geometric_px").every((error) => error === null) ? "" : element("p", {class: "note", id: "changes"}, `Changed since it was drawn: ${why}.`);
     }
-    const line = (name, words) => element("tr", {}, element("th", {scope: "row"}, words), ...at(name).map((v) => element("td", {class: "n", "data-column": name}, numberElement(v))));
+    const line = (name, words) => element("tr", {}, element("th", {scope: "row"}, words), ...at(name).map((v, k) => element("td", {class: "n", "data-column": name},
+      v === null && since[k] !== null ? "out of view" : numberElement(v))));
     const whole = at("error_px"), several = this.runs.length > 1;
     const sums = at("separable").map((is, k) => (since[k] === null ? "–" : is === 1 ? "sum up to it" : "not separable"));
     const frames = [...new Set(since.filter((frame) => frame !== null))].join(" and ");
     return element("table", {class: "properties", id: "changes"},
-      element("caption", {}, `What changed since its sprite was drawn, as of frame ${frames}: error by each alone`), this.head("cause, px"),
+      element("caption", {}, `Error by each change alone, since frame ${frames}`), this.head("cause, px"),
       element("tbody", {}, ...Object.entries(kCauses).map(([name, words]) => line(name, words)),
         element("tr", {}, element("th", {scope: "row"}, "all, the geometric error"), ...whole.map((v) => element("td", {class: "n", "data-column": "error_px"}, numberElement(v)))),
         element("tr", {}, element("th", {scope: "row"}, several ? "the parts" : "these parts"), ...sums.map((words) => element("td", {class: "n sums"}, words)))));
@@ -112,11 +116,13 @@ class PropertiesPanel {
       const values = this.runs.map((run, k) => run.value(name, rows[k]));
       if (values.every((value) => value === null)) continue;
       const {unit, meaning} = this.runs[0].column(name);
-      lines.push(element("tr", {title: meaning}, element("th", {scope: "row"}, name.replaceAll("_", " "), unit && !name.endsWith("_px") ? ` ${unit}` : ""),
+      lines.push(element("tr", {title: meaning}, element("th", {scope: "row"}, name.replaceAll("_", " "), unit && !name.endsWith("_px") && !name.endsWith(`_${unit}`) && !name.includes(unit) ? `, ${unit}` : ""),
                          ...values.map((v) => element("td", {class: "n", "data-column": name}, numberElement(v)))));
     }
     if (lines.length === 0) return "";
-    return element("table", {class: "properties"}, element("caption", {}, "What is shown, where, and at what cost"), this.head("column"), element("tbody", {}, ...lines));
+    const table = element("table", {class: "properties"}, element("caption", {}, "What is shown, where, and at what cost"), this.head("column"), element("tbody", {}, ...lines));
+    return element("details", {open: this.isOpen ?? false, ontoggle: (event) => { this.isOpen = event.target.open; }},
+                   element("summary", {}, `All ${lines.length} other columns of this decision`), table);
   }
 }
 

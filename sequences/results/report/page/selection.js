@@ -1,12 +1,14 @@
 // What is looked at? A layer in a frame of a run: in the address as #frame=120&layer=leader, so that a link shows it.
 
 const selection = {
-  frame: 0, layer: "", run: 0, listeners: [],
+  frame: 0, layer: "", run: 0, listeners: [], refused: "",  // what the address asked for and the run does not have, in words
   // `by`: who asks; all listeners are told.
   set(change) {
     const before = `${this.run} ${this.frame} ${this.layer}`;
+    const refused = this.refused;
+    this.refused = "";
     Object.assign(this, change);
-    if (`${this.run} ${this.frame} ${this.layer}` === before) return;
+    if (this.refused === refused && `${this.run} ${this.frame} ${this.layer}` === before) return;
     history.replaceState(null, "", this.link());
     this.tell();
   },
@@ -22,9 +24,12 @@ const selection = {
     const frame = Number.parseInt(words.get("frame"), 10), run = words.get("run") === "b" && runs.length > 1 ? 1 : 0;
     if (words.has("run")) change.run = run;
     const of = runs[change.run ?? this.run];
+    const refused = [];
     if (frame >= of.first && frame <= of.last) change.frame = frame;
+    else if (words.has("frame")) refused.push(`The run has no frame ${words.get("frame")}: it has ${of.first} to ${of.last}.`);
     if (of.layerAt.has(words.get("layer"))) change.layer = words.get("layer");
-    return change;
+    else if (words.has("layer")) refused.push(`It has no layer "${words.get("layer").slice(0, 100)}".`);
+    return {...change, refused: refused.join(" ")};
   },
 };
 
@@ -43,7 +48,7 @@ function element(tag, attributes = {}, ...children) {
 function numberElement(value) {
   if (value === null || value === undefined) return document.createTextNode("–");
   if (typeof value === "string") return document.createTextNode(value);
-  const text = Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(4)));
+  const text = Math.abs(value) < 1e-9 ? "0" : Number.isInteger(value) ? String(value) : String(Number(value.toPrecision(4)));
   return element("data", {value: String(value), title: String(value)}, text.replace("-", "−"));
 }
 

@@ -87,8 +87,8 @@ TEST(Changes, OfBothAlongOneLineSumUp) {
   const auto changes = changes_of_square({0.3, 0, 0}, {-0.15, 0, 0}, regulator::Policy::Hold);
   ASSERT_EQ(changes.size(), 1u);
   EXPECT_NEAR(changes[0].geometric_px, 0.15 * kFocal_px, kExact_px);
-  EXPECT_NEAR(changes[0].camera_px, 0.1 * kFocal_px, kExact_px);
-  EXPECT_NEAR(changes[0].own_motion_px, 0.05 * kFocal_px, kExact_px);
+  EXPECT_NEAR(changes[0].camera_px.value(), 0.1 * kFocal_px, kExact_px);
+  EXPECT_NEAR(changes[0].own_motion_px.value(), 0.05 * kFocal_px, kExact_px);
   EXPECT_TRUE(changes[0].separable);
 }
 
@@ -97,14 +97,14 @@ TEST(Changes, OfBothTowardsEachOtherAreSeparableAsLongAsPerspectiveIsWeak) {
   auto changes = changes_of_square({0, 0, -0.1}, {0, 0, 0.1}, regulator::Policy::Threshold);
   ASSERT_EQ(changes.size(), 1u);
   EXPECT_NEAR(changes[0].geometric_px, zoom_px(2.8), kExact_px);
-  EXPECT_NEAR(changes[0].camera_px, zoom_px(2.9), kExact_px);
-  EXPECT_NEAR(changes[0].own_motion_px, zoom_px(2.9), kExact_px);
+  EXPECT_NEAR(changes[0].camera_px.value(), zoom_px(2.9), kExact_px);
+  EXPECT_NEAR(changes[0].own_motion_px.value(), zoom_px(2.9), kExact_px);
   EXPECT_TRUE(changes[0].separable);
   changes = changes_of_square({0, 0, -0.5}, {0, 0, 0.5}, regulator::Policy::Threshold);
   ASSERT_EQ(changes.size(), 1u);
   EXPECT_NEAR(changes[0].geometric_px, zoom_px(2), kExact_px);
-  EXPECT_NEAR(changes[0].camera_px, zoom_px(2.5), kExact_px);
-  EXPECT_NEAR(changes[0].own_motion_px, zoom_px(2.5), kExact_px);
+  EXPECT_NEAR(changes[0].camera_px.value(), zoom_px(2.5), kExact_px);
+  EXPECT_NEAR(changes[0].own_motion_px.value(), zoom_px(2.5), kExact_px);
   EXPECT_FALSE(changes[0].separable);
 }
 
@@ -112,9 +112,20 @@ TEST(Changes, OfACameraThatGoesAlongAreNotSeparable) {
   const auto changes = changes_of_square({0.3, 0, 0}, {0.15, 0, 0}, regulator::Policy::Hold);
   ASSERT_EQ(changes.size(), 1u);
   EXPECT_NEAR(changes[0].geometric_px, 0.05 * kFocal_px, kExact_px);
-  EXPECT_NEAR(changes[0].camera_px, 0.1 * kFocal_px, kExact_px);
-  EXPECT_NEAR(changes[0].own_motion_px, 0.05 * kFocal_px, kExact_px);
+  EXPECT_NEAR(changes[0].camera_px.value(), 0.1 * kFocal_px, kExact_px);
+  EXPECT_NEAR(changes[0].own_motion_px.value(), 0.05 * kFocal_px, kExact_px);
   EXPECT_FALSE(changes[0].separable);
+}
+
+/// The camera goes four metres to the side and the square with it: alone, either takes it out of view.
+TEST(Changes, OfACauseThatWouldTakeTheLayerOutOfViewAreNotKnown) {
+  const auto changes = changes_of_square({4, 0, 0}, {3.9, 0, 0}, regulator::Policy::Hold);
+  ASSERT_EQ(changes.size(), 1u);
+  EXPECT_NEAR(changes[0].geometric_px, 0.1 / kDistance_m * kFocal_px, kExact_px);
+  EXPECT_FALSE(changes[0].camera_px.has_value());
+  EXPECT_FALSE(changes[0].own_motion_px.has_value());
+  EXPECT_FALSE(changes[0].separable);
+  EXPECT_NE(json_of(changes[0]).find("\"camera_px\":null"), std::string::npos);
 }
 
 TEST(Changes, OfWhatIsNotOffAreNotListed) {
@@ -142,7 +153,7 @@ Change change_of_floor(dvec3 ball_m, dvec3 lamp_m) {
 
 TEST(Changes, OfAnotherLayerComeByItsShadow) {
   const Change change = change_of_floor({0.2, 0, 0}, {});
-  EXPECT_GT(change.other_layers_px, 1);
+  EXPECT_GT(change.other_layers_px.value(), 1);
   EXPECT_EQ(change.other_layers_px, change.geometric_px);
   EXPECT_EQ(change.sum_px(), change.other_layers_px);
   EXPECT_TRUE(change.separable);
@@ -150,7 +161,7 @@ TEST(Changes, OfAnotherLayerComeByItsShadow) {
 
 TEST(Changes, OfALightComeByTheShadowsThatItThrows) {
   const Change change = change_of_floor({}, {0.2, 0, 0});
-  EXPECT_GT(change.light_px, 1);
+  EXPECT_GT(change.light_px.value(), 1);
   EXPECT_EQ(change.light_px, change.geometric_px);
   EXPECT_EQ(change.sum_px(), change.light_px);
   EXPECT_TRUE(change.separable);

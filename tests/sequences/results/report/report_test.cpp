@@ -102,7 +102,7 @@ TEST_F(Report, TheVerdictNamesTheDearestLayer) {
   const auto dearest = std::max_element(texels.begin(), texels.end(),
                                         [](const auto& a, const auto& b) { return a.second < b.second; });
   EXPECT_THAT(verdict_on(read_report_run(path("o"), false)),
-              HasSubstr("; " + dearest->first + " is the dearest layer, " + percent_of(dearest->second, all) +
+              HasSubstr("; " + dearest->first + " is the most expensive layer, " + percent_of(dearest->second, all) +
                         " % of these texels"));
 }
 
