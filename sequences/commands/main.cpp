@@ -21,6 +21,7 @@
 #include "sequences/commands/parse_error.h"
 #include "sequences/commands/run_words.h"
 #include "sequences/commands/stop.h"
+#include "sequences/commands/version.h"
 #include "sequences/commands/warps.h"
 #include "sequences/files/freed_memory.h"
 #include "sequences/files/terminal_text.h"
@@ -78,6 +79,7 @@ int main(int argc, char** argv) try {
   std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGINT, on_stop_signal);
   std::signal(SIGTERM, on_stop_signal);
+  use_asked_instruction_set();
   return run(argc, argv);
 } catch (const InputError& error) {
   return fail(error.what(), kBadInput);

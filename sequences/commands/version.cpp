@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
 
 #include <hwy/targets.h>
 
+#include "chunker/span_composite.h"
 #include "git_commit.h"
 #include "layers/effect.h"
 #include "sequences/commands/missing_effects.h"
 #include "sequences/files/child_process.h"
+#include "sequences/files/errors.h"
 #include "sequences/files/program_folder.h"
 #include "sequences/import/confinement.h"
 
@@ -48,6 +51,18 @@ std::string confinement() {
 std::string version_text() {
   return "talisman " TALISMAN_VERSION "\ncommit: " TALISMAN_COMMIT "\neffects: " + effects_text() +
          "\nsimd: " + simd_target() + "\nreaders of models: " + confinement();
+}
+
+void use_asked_instruction_set() {
+  const char* asked = std::getenv("TALISMAN_SIMD");
+  if (!asked) return;
+  std::string names;
+  for (const std::int64_t set : chunker::instruction_sets()) {
+    const std::string name = chunker::instruction_set_name(set);
+    if (name == asked) return chunker::use_instruction_set(set);
+    names += (names.empty() ? "" : ", ") + name;
+  }
+  throw InputError("TALISMAN_SIMD is '" + std::string(asked) + "', must be one of " + names);
 }
 
 }  // namespace talisman::sequences
