@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <string>
@@ -23,10 +24,14 @@ namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 using ::testing::StartsWith;
 
+/// Of a file that changed a moment ago nothing is kept (file_uses.h), and the tool may be quicker than that.
+constexpr auto kSettled = std::chrono::milliseconds(100);
+
 class CacheOptions : public testing::Test {
  protected:
   CacheOptions() {
     folder_.write("tetra.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+    std::this_thread::sleep_for(kSettled);
   }
   /// In a folder of its own, without a home.
   Outcome run(const std::string& command, const std::string& redirection = "2>&1") const {

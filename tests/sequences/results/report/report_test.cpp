@@ -102,8 +102,8 @@ TEST_F(Report, TheVerdictNamesTheDearestLayer) {
   const auto dearest = std::max_element(texels.begin(), texels.end(),
                                         [](const auto& a, const auto& b) { return a.second < b.second; });
   EXPECT_THAT(verdict_on(read_report_run(path("o"), false)),
-              HasSubstr("; " + dearest->first + " is the most expensive layer, " + percent_of(dearest->second, all) +
-                        " % of these texels"));
+              HasSubstr("; " + dearest->first + " is the most expensive layer, " +
+                        percent_of(dearest->second, all) + " % of these texels"));
 }
 
 TEST_F(Report, OfReferenceTakesWhatReferenceTakes) {
