@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "chunker/blend_constants.h"
+#include "chunker/job_order.h"
 #include "chunker/late_chunks.h"
 #include "chunker/sampling.h"
 #include "chunker/span_composite.h"
@@ -405,9 +406,10 @@ void for_each_band(Frame& frame, std::span<const PlacedSprite> sprites, std::opt
                    const Use& use) {
   const std::vector<Visible> visible = visible_sprites(sprites, {frame.width, frame.height});
   const int bands = bands_of(frame);
+  const JobOrder order(static_cast<std::size_t>(bands));
   tbb::parallel_for(tbb::blocked_range<int>(0, bands, 1), [&](const tbb::blocked_range<int>& range) {
-    for (int band = range.begin(); band != range.end(); ++band)
-      use(band, *std::make_unique<BandCompositor>(visible, background, frame));
+    for (int job = range.begin(); job != range.end(); ++job)
+      use(static_cast<int>(order[job]), *std::make_unique<BandCompositor>(visible, background, frame));
   });
 }
 

@@ -5,6 +5,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "chunker/job_order.h"
 #include "layers/check.h"
 
 namespace talisman::chunker {
@@ -71,7 +72,9 @@ CompressedSprite compress(const Sprite& sprite, const CompressionOptions& option
   result.chunks_ = sprite.chunks();
   const int columns = result.chunks_.x, count = columns * result.chunks_.y;
   std::vector<std::vector<std::uint8_t>> parts(count);
-  tbb::parallel_for(0, count, [&](int i) {
+  const JobOrder order(static_cast<std::size_t>(count));
+  tbb::parallel_for(0, count, [&](int job) {
+    const int i = static_cast<int>(order[job]);
     if (const Chunk* chunk = sprite.chunk(i % columns, i / columns))
       parts[i] = compress_chunk(*chunk, options);
   });
@@ -100,7 +103,9 @@ Sprite decompress(const CompressedSprite& sprite) {
   for (int i = 0; i < count; ++i)
     if (!sprite.chunk_bytes(i % columns, i / columns).empty()) places.push_back(i);
   std::vector<Chunk> chunks(places.size());
-  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+  const JobOrder order(places.size());
+  tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t job) {
+    const std::size_t i = order[job];
     const DecodeStatus status = decompress_chunk(sprite, places[i] % columns, places[i] / columns, chunks[i]);
     TALISMAN_CHECK(status == DecodeStatus::Ok);  // its bytes come from `compress`
   });

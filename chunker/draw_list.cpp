@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <glm/geometric.hpp>
 
+#include "chunker/job_order.h"
 #include "chunker/prepared.h"
 #include "chunker/tangent_frames.h"
 #include "chunker/transform.h"
@@ -58,7 +59,9 @@ class PartAssembly {
   std::vector<Block> run_triangles() const {
     const int count = vertices_.mesh().triangle_count();
     std::vector<Block> blocks((count + kTrianglesPerJob - 1) / kTrianglesPerJob);
-    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t b) {
+    const JobOrder order(blocks.size());
+    tbb::parallel_for(std::size_t{0}, blocks.size(), [&](std::size_t job) {
+      const std::size_t b = order[job];
       const int first = static_cast<int>(b) * kTrianglesPerJob,
                 end = std::min(count, first + kTrianglesPerJob);
       blocks[b].triangles.reserve((end - first) / 2 + 1);  // of a closed surface half faces away

@@ -12,6 +12,7 @@
 #include "chunker/chunk_work.h"
 #include "chunker/clip.h"
 #include "chunker/depth_render.h"
+#include "chunker/job_order.h"
 #include "chunker/raster.h"
 #include "layers/built_effects.h"
 #include "layers/check.h"
@@ -67,9 +68,11 @@ RenderCounters draw_chunks(const DrawList& list, const ChunkWork& work, const Re
   const int columns = work.bins.chunks.x;
   tbb::enumerable_thread_specific<ChunkRenderer<kCount>> renderers(
       [&] { return ChunkRenderer<kCount>(list, options, linear); });
+  const JobOrder order(places.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, places.size()), [&](const auto& range) {
     ChunkRenderer<kCount>& renderer = renderers.local();
-    for (std::size_t i = range.begin(); i != range.end(); ++i) {
+    for (std::size_t job = range.begin(); job != range.end(); ++job) {
+      const std::size_t i = order[job];
       const layers::ivec2 origin(places[i] % columns * kChunkSize, places[i] / columns * kChunkSize);
       draw(i, renderer, work.bins.of(places[i]), origin);
     }

@@ -10,6 +10,7 @@
 
 #include "chunker/bin.h"
 #include "chunker/coverage.h"
+#include "chunker/job_order.h"
 #include "chunker/shadow_view.h"
 #include "chunker/transform.h"
 #include "layers/check.h"
@@ -193,7 +194,9 @@ std::vector<float> draw_depths(const FaceView& face, const std::vector<Triangle>
   const layers::ivec2 size = face.view.size_px;
   std::vector<float> depths(static_cast<std::size_t>(size.x) * size.y, kNothing);
   const Bins bins = bin_triangles(triangles, size);
-  tbb::parallel_for(0, bins.chunks.x * bins.chunks.y, [&](int c) {
+  const JobOrder order(static_cast<std::size_t>(bins.chunks.x) * bins.chunks.y);
+  tbb::parallel_for(0, bins.chunks.x * bins.chunks.y, [&](int job) {
+    const int c = static_cast<int>(order[job]);
     if (bins.of(c).empty()) return;
     DepthChunk chunk(face, {c % bins.chunks.x * kChunkSize, c / bins.chunks.x * kChunkSize});
     for (const std::uint32_t i : bins.of(c)) chunk.draw(triangles[i]);

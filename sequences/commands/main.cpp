@@ -80,6 +80,7 @@ int main(int argc, char** argv) try {
   std::signal(SIGINT, on_stop_signal);
   std::signal(SIGTERM, on_stop_signal);
   use_asked_instruction_set();
+  use_asked_job_order();
   return run(argc, argv);
 } catch (const InputError& error) {
   return fail(error.what(), kBadInput);

@@ -2,11 +2,15 @@
 #include "sequences/commands/version.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <cstdlib>
+#include <string_view>
+#include <system_error>
 
 #include <hwy/targets.h>
 
+#include "chunker/job_order.h"
 #include "chunker/span_composite.h"
 #include "git_commit.h"
 #include "layers/effect.h"
@@ -63,6 +67,18 @@ void use_asked_instruction_set() {
     names += (names.empty() ? "" : ", ") + name;
   }
   throw InputError("TALISMAN_SIMD is '" + std::string(asked) + "', must be one of " + names);
+}
+
+void use_asked_job_order() {
+  const char* asked = std::getenv("TALISMAN_ORDER");
+  if (!asked) return;
+  const std::string_view text(asked);
+  std::uint32_t order = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), order);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw InputError("TALISMAN_ORDER is '" + std::string(text) +
+                     "', must be a whole number from 0 to 4294967295");
+  chunker::use_job_order(order);
 }
 
 }  // namespace talisman::sequences

@@ -18,7 +18,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   static Cache cache({folder.path(), 16});
   if (size == 0) return 0;
   const std::vector<std::uint8_t> stored(data + std::min<std::size_t>(size, 1 + data[0] % 32), data + size);
-  const ContentHash key = content_hash({data, size});
+  const ContentHash key = hash_of({data, size});
   cache.store("fuzz", key, stored);
   if (cache.load("fuzz", key) != stored) std::abort();
   for (const auto& entry : std::filesystem::directory_iterator(folder.path())) {

@@ -10,6 +10,8 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "sequences/commands/options.h"
 #include "sequences/commands/run_words.h"
 #include "sequences/files/errors.h"

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // A main for fuzz targets where libFuzzer is missing (it comes with clang): damages its seed files, or bytes
-// of its own, at random for a while. Without coverage it finds less; what it finds is as real.
+// of its own, at random. Without coverage it finds less; what it finds is as real. The inputs follow from the
+// seed number alone: a failure is met again by the same words.
 //
-//   TARGET [seconds, default 10] [seed number, default 1] [seed files…]
+//   TARGET [--inputs N | --seconds S] [--seed N] [--keep FILE] [seed files and folders of them…]
+//
+// Default: 10 seconds, seed number 1. --keep writes each input to FILE before it is fed: after a crash it is there.
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <random>
+#include <string>
 #include <vector>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
@@ -49,30 +56,77 @@ void damage(std::mt19937& random, Bytes& bytes) {
   }
 }
 
-Bytes read_file(const char* path) {
+struct Words {
+  double seconds = 10;
+  long inputs = std::numeric_limits<long>::max();
+  unsigned seed = 1;
+  std::string keep;
+  std::vector<Bytes> seeds;
+};
+
+[[noreturn]] void refuse(const std::string& what) {
+  std::fprintf(stderr, "error: %s\n", what.c_str());
+  std::exit(2);
+}
+
+Bytes read_file(const std::string& path) {
   std::ifstream in(path, std::ios::binary);
-  if (!in) {
-    std::fprintf(stderr, "error: %s: cannot be read\n", path);
-    std::exit(2);
-  }
+  if (!in) refuse(path + ": cannot be read");
   return Bytes(std::istreambuf_iterator<char>(in), {});
+}
+
+/// A file, or all files of a folder in the order of their names.
+void add_seeds(const std::string& path, std::vector<Bytes>& seeds) {
+  if (!std::filesystem::is_directory(path)) return seeds.push_back(read_file(path));
+  std::vector<std::string> files;
+  for (const auto& entry : std::filesystem::directory_iterator(path)) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  for (const std::string& file : files) seeds.push_back(read_file(file));
+}
+
+Words words_of(int argc, char** argv) {
+  Words words;
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word.rfind("--", 0) != 0) {
+      add_seeds(word, words.seeds);
+      continue;
+    }
+    if (i + 1 == argc) refuse(word + " needs a value");
+    const char* value = argv[++i];
+    if (word == "--inputs") {
+      words.inputs = std::atol(value);
+      words.seconds = std::numeric_limits<double>::infinity();
+    } else if (word == "--seconds") {
+      words.seconds = std::atof(value);
+    } else if (word == "--seed") {
+      words.seed = static_cast<unsigned>(std::atol(value));
+    } else if (word == "--keep") {
+      words.keep = value;
+    } else {
+      refuse(word + " is no option, rule: --inputs, --seconds, --seed, --keep");
+    }
+  }
+  return words;
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const double seconds = argc > 1 ? std::atof(argv[1]) : 10;
-  std::mt19937 random(argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1u);
-  std::vector<Bytes> seeds;
-  for (int i = 3; i < argc; ++i) seeds.push_back(read_file(argv[i]));
+  const Words words = words_of(argc, argv);
+  std::mt19937 random(words.seed);
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [start] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   };
   long inputs = 0;
-  for (; elapsed() < seconds; ++inputs) {
+  for (; inputs < words.inputs && elapsed() < words.seconds; ++inputs) {
+    const std::vector<Bytes>& seeds = words.seeds;
     Bytes bytes = seeds.empty() || random() % 8 == 0 ? random_bytes(random) : seeds[random() % seeds.size()];
     for (unsigned changes = random() % 8; changes > 0; --changes) damage(random, bytes);
+    if (!words.keep.empty())
+      std::ofstream(words.keep, std::ios::binary)
+          .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     LLVMFuzzerTestOneInput(bytes.data(), bytes.size());
   }
   std::printf("%ld inputs in %.1f s, no failure\n", inputs, elapsed());

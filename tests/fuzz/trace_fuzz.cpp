@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <cstdlib>
 
+#include "layers/animation.h"
 #include "sequences/content/traces/trace.h"
 #include "sequences/files/errors.h"
 #include "tests/fuzz/file_of_bytes.h"
@@ -21,9 +22,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (data[0] & 128 || options.format == TraceFormat::Colmap) options.fps = 30;
   try {
     look_through_trace(options);
-    const auto track = track_of(read_trace(options, 2), options.resample);
+    const talisman::layers::Track track{0, track_of(read_trace(options, 2), options.resample)};
     for (const double t_s : {0.0, 0.3, 1.99, 5.0}) {
-      const auto place = track.at(t_s);
+      const auto place = talisman::layers::transform_at(track, {}, t_s).matrix();
       for (int column = 0; column < 4; ++column)
         for (int row = 0; row < 4; ++row)
           if (!std::isfinite(place[column][row])) std::abort();

@@ -73,7 +73,7 @@ std::vector<Image> images_in(TraceText& text) {
   return images;
 }
 
-/// Where all names differ in one number alone, that is when they were taken, in units of the largest common step.
+/// There are images. Where all names differ in one number alone, that is when they were taken, in units of the largest common step.
 bool count_by_number(std::vector<Image>& images, double fps) {
   std::vector<std::int64_t> numbers;
   std::string around;
@@ -99,6 +99,7 @@ bool count_by_number(std::vector<Image>& images, double fps) {
 
 void read_colmap(TraceText& text, double fps, const PoseSink& sink) {
   std::vector<Image> images = images_in(text);
+  if (images.empty()) return;
   if (!count_by_number(images, fps)) {
     std::stable_sort(images.begin(), images.end(),
                      [](const Image& a, const Image& b) { return a.name < b.name; });

@@ -2,6 +2,9 @@
 /// The module behind files/picture_codec.h.
 
 #include <algorithm>
+#include <exception>
+#include <memory>
+#include <new>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -21,6 +24,23 @@ int colour_channels(const OIIO::ImageSpec& spec) {
   return layered ? 3 : spec.nchannels;
 }
 
+std::string why_not() {
+  const std::string why = OIIO::geterror();
+  return why.empty() ? "unknown format" : why;
+}
+
+/// What `use` says is wrong. A damaged header makes some readers of the library throw: memory that nobody has, places behind the end.
+template <typename Use>
+std::string said(const Use& use) {
+  try {
+    return use();
+  } catch (const std::bad_alloc&) {
+    return "it asks for more memory than there is";
+  } catch (const std::exception& error) {
+    return error.what();
+  }
+}
+
 class Reader : public PictureReader {
  public:
   explicit Reader(std::unique_ptr<OIIO::ImageInput> input) : input_(std::move(input)) {
@@ -35,9 +55,11 @@ class Reader : public PictureReader {
 
  private:
   std::string read_as(const OIIO::TypeDesc& type, void* samples) {
-    if (input_->read_image(0, 0, 0, info_.channels, type, samples)) return "";
-    const std::string why = input_->geterror();
-    return why.empty() ? "cannot be read to its end" : why;
+    return said([&]() -> std::string {
+      if (input_->read_image(0, 0, 0, info_.channels, type, samples)) return "";
+      const std::string why = input_->geterror();
+      return why.empty() ? "cannot be read to its end" : why;
+    });
   }
   std::unique_ptr<OIIO::ImageInput> input_;
 };
@@ -58,15 +80,14 @@ OIIO::ImageSpec configuration(AlphaKind alpha) {
   return config;
 }
 
-std::string why_not() {
-  const std::string why = OIIO::geterror();
-  return why.empty() ? "unknown format" : why;
-}
-
 OpenedPicture open(const std::string& path, AlphaKind alpha) {
   const OIIO::ImageSpec config = configuration(alpha);
-  auto input = OIIO::ImageInput::open(path, &config);
-  if (!input) return {nullptr, why_not()};
+  std::unique_ptr<OIIO::ImageInput> input;
+  const std::string error = said([&] {
+    input = OIIO::ImageInput::open(path, &config);
+    return input ? std::string() : why_not();
+  });
+  if (!input) return {nullptr, error};
   return {std::make_unique<Reader>(std::move(input)), ""};
 }
 
@@ -77,8 +98,12 @@ OpenedPicture open_bytes(std::span<const std::uint8_t> bytes, const std::string&
   // Given as an argument beside a configuration, 2.4 forgets the proxy; in the configuration it is kept.
   OIIO::Filesystem::IOProxy* proxy = memory.get();
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
-  auto input = OIIO::ImageInput::open("embedded." + format, &config);
-  if (!input) return {nullptr, why_not()};
+  std::unique_ptr<OIIO::ImageInput> input;
+  const std::string error = said([&] {
+    input = OIIO::ImageInput::open("embedded." + format, &config);
+    return input ? std::string() : why_not();
+  });
+  if (!input) return {nullptr, error};
   return {std::make_unique<MemoryReader>(std::move(memory), std::move(input)), ""};
 }
 

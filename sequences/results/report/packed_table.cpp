@@ -103,7 +103,7 @@ void PackedTable::add(const std::vector<Cell>& row) {
       start(field, is_word);
     }
     if (!std::holds_alternative<std::monostate>(value) && field.is_words != is_word)
-      throw std::invalid_argument("'" + field.info.name + "' has numbers and words");
+      throw std::invalid_argument("'" + field.info.name + "' has numbers and words, must be one of the two");
     if (!field.is_words) {
       const auto* number = std::get_if<double>(&value);
       field.packed->add(series, number ? *number : std::numeric_limits<double>::quiet_NaN());

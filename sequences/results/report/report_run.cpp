@@ -56,12 +56,19 @@ void for_each_line_of(const std::string& file, const std::vector<ColumnInfo>& co
   std::ifstream in(file, std::ios::binary);
   FlatLine line(columns);
   int number = 0;
+  const auto take_row = [&] {
+    try {
+      take(line.cells());
+    } catch (const std::invalid_argument& error) {  // a column of words in one line, of numbers in another
+      throw InputError(error.what(), file, number);
+    }
+  };
   for (std::string text; std::getline(in, text);) {
     ++number;
     if (in.eof()) break;  // no end of line: is being written
     if (!line.read(text)) throw InputError("is no line of ours, must be of schema " + schema, file, number);
     if (line.schema() == schema)
-      take(line.cells());
+      take_row();
     else if (other)
       other(text);
     else

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The tool under every instruction set of this machine: it says which, and draws the same.
+// The tool under every instruction set of this machine, and with its jobs in other orders: it draws the same.
 #include <sstream>
 
 #include "tests/sequences/commands/tool.h"
@@ -39,6 +39,29 @@ TEST_F(InstructionSets, DrawTheSame) {
     EXPECT_THAT(frames, HasSubstr("\"frame_hash\":\""));
     if (first.empty()) first = frames;
     EXPECT_EQ(frames, first) << set;
+  }
+}
+
+using JobOrders = Tool;
+
+TEST_F(JobOrders, DrawTheSame) {
+  write("passing.yaml", kPassing);
+  std::string first;
+  for (const char* order : {"0", "1", "7", "4294967295"}) {
+    const std::string out = std::string("order-") + order;
+    const Outcome drawn =
+        run("render passing.yaml --frames 0-3 --size 160x130 --quiet --no-report --out " + out,
+            std::string("TALISMAN_ORDER=") + order);
+    ASSERT_EQ(drawn.exit_code, 0) << drawn.output;
+    const std::string frames = read(out + "/frames.jsonl");
+    EXPECT_THAT(frames, HasSubstr("\"frame_hash\":\""));
+    if (first.empty()) first = frames;
+    EXPECT_EQ(frames, first) << order;
+  }
+  for (const char* order : {"-1", "", "4294967296", "1x", "nan"}) {
+    const Outcome refused = run("--version", std::string("TALISMAN_ORDER='") + order + "'");
+    EXPECT_EQ(refused.exit_code, 2) << order;
+    EXPECT_THAT(refused.output, ::testing::StartsWith("error: TALISMAN_ORDER is '")) << order;
   }
 }
 

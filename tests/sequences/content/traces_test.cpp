@@ -157,6 +157,8 @@ std::vector<BadTrace> bad_lines() {
           {"a.csv", "1,0,0,0,1,0,0\n", "a.csv:1: has 7 values"},
           {"a.csv", "1.5,0,0,0,1,0,0,0\n", "a.csv:1: stamp is '1.5', rule: whole nanoseconds"},
           {"images.txt", "1 1 0 0 0 0 0 0 1\n\n", "images.txt:1: has 9 words"},
+          {"images.txt", "", "images.txt: has no pose"},
+          {"images.txt", "# Image list\n", "images.txt: has no pose"},
           {"images.txt", "1 1 0 0 0 0 0 0 1 a.png\n\n", "images.txt: has one pose"}};
 }
 

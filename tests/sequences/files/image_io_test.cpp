@@ -284,6 +284,16 @@ TEST(ReadImage, WhatCannotBeReadIsNamed) {
   EXPECT_THROW(read_image(folder.path()), InputError);
 }
 
+// 33 million × 4 pixels by its header, in 54 bytes: the library's reader asks for all of it and throws.
+TEST(ReadImage, HeaderThatAsksForMoreThanThereIsIsAnError) {
+  const Folder folder;
+  std::string bmp("BMf\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\4\0\0\2\4\0\0\0\1\0\x18\0\0\0\0\0\x30\0\0\0", 38);
+  bmp.resize(102);
+  write_text_atomically(folder / "a.bmp", bmp);
+  EXPECT_THAT(message_of<InputError>([&] { read_image(folder / "a.bmp"); }),
+              HasSubstr("a.bmp: cannot be read to its end"));
+}
+
 // A file that was cut off must not come back as a picture with a black rest.
 TEST(ReadImage, TruncatedFileIsAnError) {
   const Folder folder;

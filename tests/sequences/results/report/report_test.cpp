@@ -143,6 +143,19 @@ TEST_F(Report, OfWhatIsNoRunIsRefusedInOneLine) {
   EXPECT_THAT(run("report o").output, HasSubstr("changes.jsonl:1"));
 }
 
+TEST_F(Report, WordAmongTheNumbersOfAColumnIsNamedWithItsLine) {
+  plan("o");
+  std::string text = read("o/decisions.jsonl");
+  const std::string key = "\"resolution\":";
+  const std::size_t line_2 = text.find('\n') + 1, at = text.find(key, line_2) + key.size();
+  text.replace(at, text.find_first_of(",}", at) - at, "\"old\"");
+  write("o/decisions.jsonl", text);
+  const Outcome refused = run("report o");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_EQ(refused.output,
+            "error: o/decisions.jsonl:2: 'resolution' has numbers and words, must be one of the two\n");
+}
+
 TEST_F(Report, ChangesStandBesideTheirDecisions) {
   plan("o");
   ReportRun whole = read_report_run(path("o"), false);
