@@ -13,6 +13,7 @@
 #include "chunker/blend_constants.h"
 #include "chunker/job_order.h"
 #include "chunker/late_chunks.h"
+#include "chunker/lattice.h"
 #include "chunker/sampling.h"
 #include "chunker/span_composite.h"
 #include "chunker/tile_reach.h"
@@ -37,7 +38,8 @@ struct Visible {
   const Sprite* sprite = nullptr;
   TapMap map;
   Multiplier multiplier;
-  PixelRange lines;  ///< of the display; no others touch it
+  PixelRange lines;              ///< of the display; no others touch it
+  std::optional<ivec2> lattice;  ///< where each pixel shows a whole texel: that of pixel (0, 0)
 };
 
 /// columns_touched() with the axes of the display exchanged.
@@ -60,7 +62,7 @@ std::vector<Visible> visible_sprites(std::span<const PlacedSprite> sprites, ivec
     const Multiplier multiplier = fixed_multiplier(placed.color_multiplier, placed.alpha_multiplier);
     if (size.x <= 0 || size.y <= 0 || !map || multiplier.is_zero()) continue;
     const PixelRange lines = lines_touched(*map, size, display);
-    if (!lines.empty()) visible.push_back({placed.sprite, *map, multiplier, lines});
+    if (!lines.empty()) visible.push_back({placed.sprite, *map, multiplier, lines, lattice_origin(*map)});
   }
   return visible;
 }
@@ -297,6 +299,8 @@ class BandCompositor {
     const Visible& v = *touching.visible;
     if (hidden)
       count_hidden(v, tile);
+    else if (v.lattice)
+      lay_whole_texels(v, tile);
     else
       v.map.perspective ? lay_perspective(v, tile) : lay_affine(v, tile);
     touching.seen |= counters_.pixels_composited > before;
@@ -304,6 +308,8 @@ class BandCompositor {
 
   /// Counts a sprite as if it were drawn.
   void count_hidden(const Visible& v, const Tile& tile) {
+    if (v.lattice)
+      return count_hidden(lattice_reach(*v.lattice, v.sprite->size_px(), tile.rect()), *v.sprite);
     if (const auto reach = whole_tile_reach(v.map, v.sprite->size_px(), tile.rect())) {
       const bool clear = is_clear(*v.sprite, reach->outer.texels());
       if (clear || !v.map.perspective || !is_clear(*v.sprite, reach->inner.texels())) {
@@ -335,6 +341,13 @@ class BandCompositor {
     if (!is_clear(sprite, positions.bounds.texels())) return true;
     counters_.chunks_skipped_clear += positions.line_count;
     return false;
+  }
+
+  void lay_whole_texels(const Visible& v, const Tile& tile) {
+    const LatticeReach reach = lattice_reach(*v.lattice, v.sprite->size_px(), tile.rect());
+    if (!count(reach, *v.sprite)) return;
+    blend_lattice(lattice_job(*v.sprite, *v.lattice, {tile.x, tile.y}, reach.pixels, v.multiplier),
+                  tile.pixels);
   }
 
   void lay_affine(const Visible& v, const Tile& tile) {

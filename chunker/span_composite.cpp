@@ -13,6 +13,17 @@ namespace talisman::chunker {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// The texels that the pixels of a line show, one each: of one row of two chunks side by side.
+struct TexelRow {
+  const Texel *left, *right;  ///< the first texel of the row; null: clear
+  int split;             ///< pixel k shows left[kChunkSize - split + k] below it, right[k - split] from it on
+  bool may_read_beside;  ///< a vector's texels before and after the row are texels of its chunk, too
+  Texel at(int k) const {
+    if (k < split) return left ? left[kChunkSize - split + k] : Texel{};
+    return right ? right[k - split] : Texel{};
+  }
+};
+
 #if HWY_TARGET == HWY_SCALAR
 
 // For machines without byte shuffles: the formulas of the header, a pixel at a time.
@@ -77,10 +88,10 @@ void locate(const TileJob& job, const LineJob& line, Footprints& f, std::uint32_
 }
 
 template <bool kScaled>
-void blend_texels(const Texel* texels, std::ptrdiff_t origin, PixelRange range, const Channels& multiplier,
-                  PackedPixel* destination) {
+void blend_texel_row(const TexelRow& texels, PixelRange range, const Channels& multiplier,
+                     PackedPixel* destination) {
   for (int k = range.first; k < range.last; ++k) {
-    const Texel& t = texels[origin + k];
+    const Texel t = texels.at(k);
     Channels source;
     for (int c = 0; c < 4; ++c) source[c] = decoded(&t.r, c);
     finish<kScaled>(source, multiplier, destination + k);
@@ -237,30 +248,72 @@ HWY_INLINE void locate(const TileJob& job, const LineJob& line, Footprints& f, s
   }
 }
 
-/// 16-bit linear of as many texels as there are pixels in a vector.
-HWY_INLINE VHalves decoded(const Texel* texels) {
-  const VHalves v = hn::PromoteTo(Halves(), hn::LoadU(hn::Rebind<std::uint8_t, Halves>(), &texels->r));
-  return hn::Mul(v, hn::Or(v, halves(0x00FF000000000000u)));
+/// round(v · b / 255) of 16-bit lanes, b ≤ 255, v ≤ kOne. (b · 257) / 2¹⁶ is b / 255 less one part in 2¹⁶, so that the quotient is
+/// short by less than 1 + 65025 / 2¹⁶: the remainder is below 508 and says how often to add one.
+HWY_INLINE VHalves scaled_by_byte(VHalves v, VHalves b) {
+  const VHalves quotient = hn::MulHigh(v, hn::Or(b, hn::ShiftLeft<8>(b)));
+  const VHalves rest = hn::Sub(hn::Mul(v, b), hn::Mul(quotient, halves(255 * kSameInAll)));
+  const auto signed_rest = hn::BitCast(Shorts(), rest);
+  const auto once = hn::VecFromMask(Shorts(), hn::Gt(signed_rest, hn::Set(Shorts(), 127)));
+  const auto twice = hn::VecFromMask(Shorts(), hn::Gt(signed_rest, hn::Set(Shorts(), 382)));
+  return hn::Sub(quotient, hn::BitCast(Halves(), hn::Add(once, twice)));  // minus minus one
 }
 
-/// Whole texels side by side, pixel k showing texels[origin + k]: no filter, no gathering. Used for every
-/// sprite that is shown as it was drawn. The origin is an offset because only the texels of `range` exist.
+/// Lays whole texels over the pixels at `destination`. An alpha of one byte leaves 255 (255 - a) of kOne = 255² to what is below, so that
+/// `over` needs to divide by 255 alone.
 template <bool kScaled>
-HWY_INLINE void blend_texels(const Texel* texels, std::ptrdiff_t origin, PixelRange range, VHalves multiplier,
-                             PackedPixel* destination) {
-  const int lanes = static_cast<int>(hn::Lanes(Pixels()));
-  Texel edge[8];
-  for (int k = range.first & -lanes; k < range.last; k += lanes) {
-    if (k >= range.first && k + lanes <= range.last) {
-      finish<kScaled>(decoded(texels + (origin + k)), multiplier, destination + k);
-      continue;
-    }
-    for (int i = 0; i < lanes; ++i) {
-      const bool inside = k + i >= range.first && k + i < range.last;
-      edge[i] = inside ? texels[origin + k + i] : Texel{};
-    }
-    finish<kScaled>(decoded(edge), multiplier, destination + k);
+HWY_INLINE void lay_texels(VHalves v, VHalves multiplier, PackedPixel* destination) {
+  alignas(16) static constexpr std::uint8_t kAlpha[16] = {6,  7,  6,  7,  6,  7,  6,  7,
+                                                          14, 15, 14, 15, 14, 15, 14, 15};
+  const VHalves source = hn::Mul(v, hn::Or(v, halves(0x00FF000000000000u)));  // 16-bit linear
+  if constexpr (kScaled) return finish<true>(source, multiplier, destination);
+  const VHalves alpha = hn::TableLookupBytes(v, hn::BitCast(Halves(), block_pattern(kAlpha)));
+  const VHalves left = hn::Xor(alpha, halves(255 * kSameInAll));
+  if (hn::AllTrue(Halves(), hn::Eq(left, hn::Zero(Halves())))) {
+    hn::Store(hn::BitCast(Pixels(), source), Pixels(), destination);
+    return;
   }
+  const VHalves below = hn::BitCast(Halves(), hn::Load(Pixels(), destination));
+  const VHalves sum =
+      hn::Min(hn::SaturatedAdd(source, scaled_by_byte(below, left)), halves(kOne * kSameInAll));
+  hn::Store(hn::BitCast(Pixels(), sum), Pixels(), destination);
+}
+
+/// Bytes of as many texels as there are pixels in a vector, in 16 bits each; null: clear.
+HWY_INLINE VHalves load_texels(const Texel* texels) {
+  if (!texels) return hn::Zero(Halves());
+  return hn::PromoteTo(Halves(), hn::LoadU(hn::Rebind<std::uint8_t, Halves>(), &texels->r));
+}
+
+/// Where a vector shows both chunks.
+HWY_INLINE VHalves load_across(const TexelRow& row, int k, int lanes) {
+  if (!row.may_read_beside) {
+    Texel texels[8];
+    for (int i = 0; i < lanes; ++i) texels[i] = row.at(k + i);
+    return load_texels(texels);
+  }
+  const VHalves left = load_texels(row.left ? row.left + (kChunkSize - row.split + k) : nullptr);
+  const VHalves right = load_texels(row.right ? row.right + (k - row.split) : nullptr);
+  const auto is_left = hn::FirstN(Pixels(), static_cast<std::size_t>(row.split - k));
+  return hn::BitCast(Halves(),
+                     hn::IfThenElse(is_left, hn::BitCast(Pixels(), left), hn::BitCast(Pixels(), right)));
+}
+
+/// No filter, no gathering. Pixels beside `range` show texels outside the sprite, which are clear.
+template <bool kScaled>
+HWY_INLINE void blend_texel_row(const TexelRow& row, PixelRange range, VHalves multiplier,
+                                PackedPixel* destination) {
+  const int lanes = static_cast<int>(hn::Lanes(Pixels()));
+  int k = range.first & -lanes;
+  for (; k + lanes <= row.split && k < range.last; k += lanes)
+    if (row.left)
+      lay_texels<kScaled>(load_texels(row.left + (kChunkSize - row.split + k)), multiplier, destination + k);
+  if (k < row.split && k < range.last) {
+    lay_texels<kScaled>(load_across(row, k, lanes), multiplier, destination + k);
+    k += lanes;
+  }
+  for (; k < range.last && row.right; k += lanes)
+    lay_texels<kScaled>(load_texels(row.right + (k - row.split)), multiplier, destination + k);
 }
 
 VHalves multiplier_lanes(const Multiplier& multiplier) {
@@ -288,10 +341,6 @@ HWY_INLINE void fetch(const TileJob& job, const LineJob& line, Footprints& f) {
   clear(line.pixels.last, (line.pixels.last + kMostLanes - 1) & -kMostLanes);
 }
 
-bool on_lattice(const TileJob& job, const LineJob& line) {
-  return job.step_x == 65536 && job.step_y == 0 && ((line.x | line.y) & 0xFF00u) == 0;
-}
-
 template <bool kScaled>
 void blend_lines(const TileJob& job, PackedPixel* tile) {
   const auto multiplier = multiplier_lanes(job.multiplier);
@@ -302,15 +351,25 @@ void blend_lines(const TileJob& job, PackedPixel* tile) {
     line.x -= job.origin_x;
     line.y -= job.origin_y;
     PackedPixel* destination = tile + row * kRunPixels;
-    if (on_lattice(job, line)) {
-      const std::ptrdiff_t row_origin = static_cast<std::ptrdiff_t>(line.y >> 16) * job.stride;
-      const std::ptrdiff_t origin = row_origin + (static_cast<std::int32_t>(line.x) >> 16);
-      blend_texels<kScaled>(job.window, origin, line.pixels, multiplier, destination);
-    } else {
-      fetch(job, line, footprints);
-      blend_footprints<kScaled>(footprints, line.pixels, multiplier, destination);
-    }
+    fetch(job, line, footprints);
+    blend_footprints<kScaled>(footprints, line.pixels, multiplier, destination);
   }
+}
+
+template <bool kScaled>
+void blend_lattice_lines(const LatticeJob& job, PackedPixel* tile) {
+  const auto multiplier = multiplier_lanes(job.multiplier);
+  for (int k = job.lines.first; k < job.lines.last; ++k) {
+    const int below = job.row + k >= kChunkSize, row = (job.row + k) % kChunkSize;
+    const auto start = [row](const Texel* chunk) { return chunk ? chunk + row * kChunkSize : nullptr; };
+    const TexelRow texels{start(job.chunks[below][0]), start(job.chunks[below][1]), kChunkSize - job.column,
+                          row > 0 && row < kChunkSize - 1};
+    blend_texel_row<kScaled>(texels, job.columns, multiplier, tile + k * kRunPixels);
+  }
+}
+
+void BlendLattice(const LatticeJob& job, PackedPixel* tile) {
+  job.multiplier.is_one() ? blend_lattice_lines<false>(job, tile) : blend_lattice_lines<true>(job, tile);
 }
 
 void BlendTile(const TileJob& job, PackedPixel* tile) {
@@ -333,8 +392,13 @@ namespace talisman::chunker {
 
 HWY_EXPORT(BlendTile);
 HWY_EXPORT(BlendRun);
+HWY_EXPORT(BlendLattice);
 
 void blend_tile(const TileJob& job, PackedPixel* tile) { HWY_DYNAMIC_DISPATCH(BlendTile)(job, tile); }
+
+void blend_lattice(const LatticeJob& job, PackedPixel* tile) {
+  HWY_DYNAMIC_DISPATCH(BlendLattice)(job, tile);
+}
 
 void blend_run(const Footprints& footprints, const Multiplier& multiplier, PackedPixel* destination) {
   HWY_DYNAMIC_DISPATCH(BlendRun)(footprints, multiplier, destination);

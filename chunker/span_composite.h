@@ -61,6 +61,17 @@ struct TileJob {
   std::uint32_t origin_x = 0, origin_y = 0;  ///< position of the window's first texel, as those of the lines
 };
 
+/// A tile that shows whole texels, each pixel one (lattice.h): the four chunks that it reads, and where in them.
+struct LatticeJob {
+  const Texel* chunks[2][2] = {};  ///< [row][column], each 32×32 texels; null: clear
+  int column = 0, row = 0;         ///< 0 … 31: the texel of chunks[0][0] that the tile's first pixel shows
+  PixelRange columns, lines;       ///< of the tile's pixels, those that touch the sprite
+  Multiplier multiplier;
+};
+
+/// Lays it over `tile`, as blend_tile() would.
+void blend_lattice(const LatticeJob& job, PackedPixel* tile);
+
 /// Lays a tile's lines over `tile` (kBandLines rows of kRunPixels pixels).
 void blend_tile(const TileJob& job, PackedPixel* tile);
 
