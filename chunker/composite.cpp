@@ -16,6 +16,7 @@
 #include "chunker/lattice.h"
 #include "chunker/sampling.h"
 #include "chunker/span_composite.h"
+#include "chunker/tile_lines.h"
 #include "chunker/tile_reach.h"
 #include "chunker/window.h"
 #include "layers/check.h"
@@ -32,15 +33,6 @@ static_assert(sizeof(Linear16) == sizeof(PackedPixel));
 bool has_chunks_to_draw(const Sprite& sprite) {
   return sprite.late_chunks() != nullptr && !sprite.late_chunks()->all_drawn();
 }
-
-/// A sprite that shows something, ready for sampling.
-struct Visible {
-  const Sprite* sprite = nullptr;
-  TapMap map;
-  Multiplier multiplier;
-  PixelRange lines;              ///< of the display; no others touch it
-  std::optional<ivec2> lattice;  ///< where each pixel shows a whole texel: that of pixel (0, 0)
-};
 
 /// columns_touched() with the axes of the display exchanged.
 PixelRange lines_touched(const TapMap& map, ivec2 size, ivec2 display) {
@@ -65,109 +57,6 @@ std::vector<Visible> visible_sprites(std::span<const PlacedSprite> sprites, ivec
     if (!lines.empty()) visible.push_back({placed.sprite, *map, multiplier, lines, lattice_origin(*map)});
   }
   return visible;
-}
-
-/// A display tile and where it lies; the part outside the display is drawn but not kept.
-struct Tile {
-  int x = 0, y = 0;
-  ivec2 display{0, 0};
-  PackedPixel* pixels = nullptr;  ///< kBandLines rows of kRunPixels
-  int columns() const { return std::min(kRunPixels, display.x - x); }
-  int lines() const { return std::min(kBandLines, display.y - y); }
-  RectI rect() const { return {x, y, x + columns(), y + lines()}; }
-};
-
-/// The pixels of a run, 0 … columns-1, that touch a sprite.
-PixelRange touching_pixels(const TapMap& map, const TapPosition& start, ivec2 size, int columns) {
-  const TapPosition end{start.x + (columns - 1) * map.step_x, start.y + (columns - 1) * map.step_y};
-  if (touches(start, size) && touches(end, size)) return {0, columns};  // inside a sprite, nearly all
-  const PixelRange x = pixels_touching(start.x, map.step_x, size.x, columns);
-  const PixelRange y = pixels_touching(start.y, map.step_y, size.y, columns);
-  return {std::max(x.first, y.first), std::min(x.last, y.last)};
-}
-
-/// The lines of an affine tile, all but the window that they read from.
-struct AffineLines {
-  TileJob job;
-  std::int64_t pixel_count = 0, line_count = 0;
-  TapBounds bounds;
-};
-
-LineJob line_job(const TapPosition& start, PixelRange pixels) {
-  return {static_cast<std::uint32_t>(start.x), static_cast<std::uint32_t>(start.y), pixels};
-}
-
-/// Every pixel of the tile touches.
-void whole_lines(const Visible& v, const Tile& tile, const TapBounds& bounds, AffineLines& lines) {
-  for (int row = 0; row < tile.lines(); ++row)
-    lines.job.lines[row] = line_job(*run_start(v.map, tile.x, tile.y + row), {0, tile.columns()});
-  lines.pixel_count = static_cast<std::int64_t>(tile.lines()) * tile.columns();
-  lines.line_count = tile.lines();
-  lines.bounds = bounds;
-}
-
-AffineLines affine_lines(const Visible& v, const Tile& tile) {
-  AffineLines lines;
-  lines.job.step_x = static_cast<std::uint32_t>(v.map.step_x);
-  lines.job.step_y = static_cast<std::uint32_t>(v.map.step_y);
-  lines.job.multiplier = v.multiplier;
-  if (const auto reach = whole_tile_reach(v.map, v.sprite->size_px(), tile.rect())) {
-    whole_lines(v, tile, reach->outer, lines);
-    return lines;
-  }
-  const ivec2 size = v.sprite->size_px();
-  for (int row = 0; row < tile.lines(); ++row) {
-    const auto start = run_start(v.map, tile.x, tile.y + row);
-    if (!start) continue;
-    const PixelRange range = touching_pixels(v.map, *start, size, tile.columns());
-    if (range.empty()) continue;
-    lines.job.lines[row] = line_job(*start, range);
-    lines.pixel_count += range.last - range.first;
-    ++lines.line_count;
-    for (const int k : {range.first, range.last - 1}) {
-      lines.bounds.include(tap_texel(start->x + k * v.map.step_x), tap_texel(start->y + k * v.map.step_y));
-    }
-  }
-  return lines;
-}
-
-/// Positions of all pixels of a tile, one by one: perspective, and minified so far that a window does not
-/// hold the tile.
-struct PixelTaps {
-  static constexpr std::int64_t kNothing = INT64_MIN;
-  std::array<TapPosition, kBandLines * kRunPixels> at;
-  std::int64_t pixel_count = 0, line_count = 0;
-  TapBounds bounds;
-};
-
-/// Calls position(x, y) → optional<TapPosition> for every pixel.
-template <typename Position>
-void locate_pixels(const Tile& tile, PixelTaps& taps, const Position& position) {
-  taps.at.fill({PixelTaps::kNothing, 0});
-  for (int row = 0; row < tile.lines(); ++row) {
-    const std::int64_t before = taps.pixel_count;
-    for (int k = 0; k < tile.columns(); ++k) {
-      const std::optional<TapPosition> p = position(row, k);
-      if (!p) continue;
-      taps.at[row * kRunPixels + k] = *p;
-      taps.bounds.include(tap_texel(p->x), tap_texel(p->y));
-      ++taps.pixel_count;
-    }
-    taps.line_count += taps.pixel_count > before;
-  }
-}
-
-void locate_perspective(const Visible& v, const Tile& tile, PixelTaps& taps) {
-  const ivec2 size = v.sprite->size_px();
-  locate_pixels(tile, taps,
-                [&](int row, int k) { return perspective_tap(v.map, tile.x + k, tile.y + row, size); });
-}
-
-/// Is a sprite opaque in every texel that the tile reads, so that nothing below it shows?
-bool hides(const Visible& v, const Tile& tile) {
-  if (!v.multiplier.is_one()) return false;
-  const auto reach = whole_tile_reach(v.map, v.sprite->size_px(), tile.rect());
-  return reach && is_opaque(*v.sprite, reach->outer.texels());
 }
 
 std::uint64_t texel_pair(Texel left, Texel right) {
@@ -228,9 +117,9 @@ class BandCompositor {
     Tile tile{0, band * kBandLines, {frame_.width, frame_.height}, tile_.data()};
     for (; tile.x < frame_.width; tile.x += kRunPixels) {
       begin(tile);
-      const std::size_t bottom = lowest_shown(tile);
+      const auto bottom = lowest_shown(tile);
       for (std::size_t i = 0; i < touching_.size(); ++i) {
-        if (touching_[i].may_touch(tile)) lay(touching_[i], tile, i < bottom);
+        if (touching_[i].may_touch(tile)) lay(touching_[i], tile, hidden_strips(bottom, i));
       }
       keep(tile);
     }
@@ -243,7 +132,8 @@ class BandCompositor {
     collect(band);
     Tile tile{0, band * kBandLines, {frame_.width, frame_.height}, nullptr};
     for (; tile.x < frame_.width; tile.x += kRunPixels) {
-      for (std::size_t i = lowest_shown(tile); i < touching_.size(); ++i)
+      const auto bottom = lowest_shown(tile);
+      for (std::size_t i = *std::min_element(bottom.begin(), bottom.end()); i < touching_.size(); ++i)
         if (touching_[i].may_touch(tile)) read_late(*touching_[i].visible, tile);
     }
   }
@@ -255,6 +145,9 @@ class BandCompositor {
     bool seen = false;
     bool may_touch(const Tile& tile) const {
       return tile.x + kRunPixels > columns.first && tile.x < columns.last;
+    }
+    bool may_hide(const Tile& tile) const {
+      return tile.x >= columns.first && tile.x + tile.columns() <= columns.last;
     }
   };
 
@@ -269,12 +162,24 @@ class BandCompositor {
     }
   }
 
-  /// The topmost sprite that hides those below it in a tile; 0 where none does.
-  std::size_t lowest_shown(const Tile& tile) const {
-    for (std::size_t i = touching_.size(); i-- > 0;) {
-      if (touching_[i].may_touch(tile) && hides(*touching_[i].visible, tile)) return i;
+  /// By strip, the topmost sprite that hides those below it; 0 where none does.
+  std::array<std::size_t, kStrips> lowest_shown(const Tile& tile) const {
+    std::array<std::size_t, kStrips> bottom{};
+    Strips open = kAllStrips;
+    for (std::size_t i = touching_.size(); i-- > 0 && open != 0;) {
+      if (!touching_[i].may_hide(tile)) continue;
+      const Strips hidden = strips_hidden_by(*touching_[i].visible, tile, open);
+      for (int k = 0; k < kStrips; ++k)
+        if ((hidden >> k & 1u) != 0) bottom[k] = i;
+      open &= ~hidden;
     }
-    return 0;
+    return bottom;
+  }
+
+  static Strips hidden_strips(const std::array<std::size_t, kStrips>& bottom, std::size_t sprite) {
+    Strips hidden = 0;
+    for (int k = 0; k < kStrips; ++k) hidden |= static_cast<Strips>(sprite < bottom[k]) << k;
+    return hidden;
   }
 
   static void read_late(const Visible& v, const Tile& tile) {
@@ -294,15 +199,15 @@ class BandCompositor {
         chunk_or_clear(*v.sprite, column, row);
   }
 
-  void lay(Touching& touching, const Tile& tile, bool hidden) {
+  void lay(Touching& touching, const Tile& tile, Strips hidden) {
     const std::int64_t before = counters_.pixels_composited;
     const Visible& v = *touching.visible;
-    if (hidden)
+    if (hidden == kAllStrips)
       count_hidden(v, tile);
     else if (v.lattice)
-      lay_whole_texels(v, tile);
+      lay_whole_texels(v, tile, hidden);
     else
-      v.map.perspective ? lay_perspective(v, tile) : lay_affine(v, tile);
+      v.map.perspective ? lay_perspective(v, tile, hidden) : lay_affine(v, tile, hidden);
     touching.seen |= counters_.pixels_composited > before;
   }
 
@@ -343,17 +248,31 @@ class BandCompositor {
     return false;
   }
 
-  void lay_whole_texels(const Visible& v, const Tile& tile) {
+  void lay_whole_texels(const Visible& v, const Tile& tile, Strips hidden) {
     const LatticeReach reach = lattice_reach(*v.lattice, v.sprite->size_px(), tile.rect());
     if (!count(reach, *v.sprite)) return;
-    blend_lattice(lattice_job(*v.sprite, *v.lattice, {tile.x, tile.y}, reach.pixels, v.multiplier),
-                  tile.pixels);
+    LatticeJob job = lattice_job(*v.sprite, *v.lattice, {tile.x, tile.y}, reach.pixels, v.multiplier);
+    const PixelRange all = job.lines;
+    for (int k = 0; k < kStrips; ++k) {
+      const PixelRange strip = tile.strip(k);
+      job.lines = {std::max(all.first, strip.first), std::min(all.last, strip.last)};
+      if (job.lines.empty()) continue;
+      if ((hidden >> k & 1u) != 0)
+        counters_.pixels_hidden += std::int64_t{job.lines.last - job.lines.first} * reach.pixels.width();
+      else
+        blend_lattice(job, tile.pixels);
+    }
   }
 
-  void lay_affine(const Visible& v, const Tile& tile) {
+  void lay_affine(const Visible& v, const Tile& tile, Strips hidden) {
     AffineLines lines = affine_lines(v, tile);
     if (!count(lines, *v.sprite)) return;
-    if (!window_.gather(*v.sprite, lines.bounds.rect)) return lay_minified(v, lines.job, tile);
+    if (hidden != 0) counters_.pixels_hidden += leave_out(hidden, lines);
+    if (!window_.gather(*v.sprite, lines.bounds.rect)) {
+      PixelTaps taps;
+      locate_minified(lines.job, tile, taps);
+      return blend_pixels(SpriteSource{*v.sprite}, taps, v.multiplier, tile);
+    }
     lines.job.window = window_.texels();
     lines.job.stride = static_cast<std::uint32_t>(window_.stride());
     lines.job.origin_x = static_cast<std::uint32_t>(window_.origin().x) << 16;
@@ -361,22 +280,11 @@ class BandCompositor {
     blend_tile(lines.job, tile.pixels);
   }
 
-  /// Without a window. Positions of pixels that touch fit 32 bits with their sign.
-  void lay_minified(const Visible& v, const TileJob& job, const Tile& tile) {
-    PixelTaps taps;
-    locate_pixels(tile, taps, [&](int row, int k) -> std::optional<TapPosition> {
-      const LineJob& line = job.lines[row];
-      if (k < line.pixels.first || k >= line.pixels.last) return std::nullopt;
-      return TapPosition{static_cast<std::int32_t>(line.x + k * job.step_x),
-                         static_cast<std::int32_t>(line.y + k * job.step_y)};
-    });
-    blend_pixels(SpriteSource{*v.sprite}, taps, v.multiplier, tile);
-  }
-
-  void lay_perspective(const Visible& v, const Tile& tile) {
+  void lay_perspective(const Visible& v, const Tile& tile, Strips hidden) {
     PixelTaps taps;
     locate_perspective(v, tile, taps);
     if (!count(taps, *v.sprite)) return;
+    if (hidden != 0) counters_.pixels_hidden += leave_out(hidden, taps);
     if (window_.gather(*v.sprite, taps.bounds.rect)) {
       blend_pixels(WindowSource{window_}, taps, v.multiplier, tile);
     } else {
