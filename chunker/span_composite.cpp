@@ -368,15 +368,15 @@ void blend_lattice_lines(const LatticeJob& job, PackedPixel* tile) {
   }
 }
 
-void BlendLattice(const LatticeJob& job, PackedPixel* tile) {
+void blend_lattice_lanes(const LatticeJob& job, PackedPixel* tile) {
   job.multiplier.is_one() ? blend_lattice_lines<false>(job, tile) : blend_lattice_lines<true>(job, tile);
 }
 
-void BlendTile(const TileJob& job, PackedPixel* tile) {
+void blend_tile_lanes(const TileJob& job, PackedPixel* tile) {
   job.multiplier.is_one() ? blend_lines<false>(job, tile) : blend_lines<true>(job, tile);
 }
 
-void BlendRun(const Footprints& f, const Multiplier& multiplier, PackedPixel* destination) {
+void blend_run_lanes(const Footprints& f, const Multiplier& multiplier, PackedPixel* destination) {
   const PixelRange all{0, kRunPixels};
   const auto lanes = multiplier_lanes(multiplier);
   multiplier.is_one() ? blend_footprints<false>(f, all, lanes, destination)
@@ -390,18 +390,18 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace talisman::chunker {
 
-HWY_EXPORT(BlendTile);
-HWY_EXPORT(BlendRun);
-HWY_EXPORT(BlendLattice);
+HWY_EXPORT(blend_tile_lanes);
+HWY_EXPORT(blend_run_lanes);
+HWY_EXPORT(blend_lattice_lanes);
 
-void blend_tile(const TileJob& job, PackedPixel* tile) { HWY_DYNAMIC_DISPATCH(BlendTile)(job, tile); }
+void blend_tile(const TileJob& job, PackedPixel* tile) { HWY_DYNAMIC_DISPATCH(blend_tile_lanes)(job, tile); }
 
 void blend_lattice(const LatticeJob& job, PackedPixel* tile) {
-  HWY_DYNAMIC_DISPATCH(BlendLattice)(job, tile);
+  HWY_DYNAMIC_DISPATCH(blend_lattice_lanes)(job, tile);
 }
 
 void blend_run(const Footprints& footprints, const Multiplier& multiplier, PackedPixel* destination) {
-  HWY_DYNAMIC_DISPATCH(BlendRun)(footprints, multiplier, destination);
+  HWY_DYNAMIC_DISPATCH(blend_run_lanes)(footprints, multiplier, destination);
 }
 
 std::vector<std::int64_t> instruction_sets() { return hwy::SupportedAndGeneratedTargets(); }

@@ -111,7 +111,7 @@ std::int64_t leave_out(Strips strips, PixelTaps& taps) {
   for (int row = 0; row < kBandLines; ++row) {
     if (!has_strip_of(strips, row)) continue;
     for (int k = 0; k < kRunPixels; ++k) {
-      TapPosition& at = taps.at[static_cast<std::size_t>(row * kRunPixels + k)];
+      TapPosition& at = taps.at[row * kRunPixels + k];
       pixels += at.x != PixelTaps::kNothing;
       at.x = PixelTaps::kNothing;
     }

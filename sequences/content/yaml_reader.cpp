@@ -7,6 +7,7 @@
 #include <optional>
 #include <sstream>
 
+#include <yaml-cpp/eventhandler.h>
 #include <yaml-cpp/yaml.h>
 
 #include "sequences/content/nearest_word.h"
@@ -156,20 +157,59 @@ void check_encoding(const std::string& text, const std::string& file) {
                    file, static_cast<int>(line));
 }
 
+/// In which line the content of each document begins.
+class DocumentLines : public YAML::EventHandler {
+ public:
+  std::vector<int> lines;
+
+  void OnDocumentStart(const YAML::Mark&) override { is_first_ = true; }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t) override { note(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override { note(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string&, YAML::anchor_t, const std::string&) override {
+    note(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                       YAML::EmitterStyle::value) override {
+    note(mark);
+  }
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string&, YAML::anchor_t,
+                  YAML::EmitterStyle::value) override {
+    note(mark);
+  }
+  void OnMapEnd() override {}
+
+ private:
+  void note(const YAML::Mark& mark) {
+    if (is_first_) lines.push_back(mark.line + 1);
+    is_first_ = false;
+  }
+  bool is_first_ = false;
+};
+
+/// There may be no second document. YAML::LoadAll would find out, but makes documents for ever from a comma that begins one.
+void check_documents(const std::string& text, const std::string& file) {
+  std::istringstream in(text);
+  YAML::Parser parser(in);
+  DocumentLines found;
+  for (int k = 0; k < 2 && parser.HandleNextDocument(found); ++k) continue;
+  if (found.lines.size() > 1)
+    throw InputError("a second document, rule: one YAML document in a file", file,
+                     std::max(1, found.lines[1]));
+}
+
 }  // namespace
 
 YamlMap read_yaml_text(const std::string& text, const std::string& file) {
   check_encoding(text, file);
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(text);
-    if (documents.size() > 1)
-      throw InputError("a second document, rule: one YAML document in a file", file,
-                       std::max(1, documents[1].Mark().line + 1));
-    if (documents.empty() || documents[0].IsNull())
-      throw InputError("is empty, rule: a sequence file is a YAML map", file);
-    if (!documents[0].IsMap())
+    check_documents(text, file);
+    const YAML::Node document = YAML::Load(text);
+    if (document.IsNull()) throw InputError("is empty, rule: a sequence file is a YAML map", file);
+    if (!document.IsMap())
       throw InputError("is not a map of keys and values, rule: a sequence file is a YAML map", file, 1);
-    return YamlValue(documents[0], "", file).map();
+    return YamlValue(document, "", file).map();
   } catch (const YAML::Exception& e) {
     throw InputError("not YAML: " + e.msg, file, e.mark.line + 1);
   }

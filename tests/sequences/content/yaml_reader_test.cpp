@@ -34,6 +34,13 @@ TEST(ReadYaml, SecondDocumentIsRefusedWhereItBegins) {
   EXPECT_THAT(error_of("a: 1\n---\n"), HasSubstr("a second document")) << "an empty one is one";
 }
 
+// The library's LoadAll makes documents from it until memory ends.
+TEST(ReadYaml, CommaBehindAnAnchorEnds) {
+  EXPECT_THAT(error_of("&r(aFme!Fme!sbackg, esha 11\nha 11\n"), HasSubstr("a.yaml:"));
+  EXPECT_THAT(error_of(", a: 1\n"), HasSubstr("a.yaml:"));
+  EXPECT_THAT(error_of("&a ,\n"), HasSubstr("a.yaml"));
+}
+
 TEST(ReadYaml, WhatIsNoUtf8IsRefusedAtItsLine) {
   // Latin 1: an e with acute accent is the byte E9.
   EXPECT_THAT(error_of("a: 1\nname: caf\xE9\nb: 2\n"), HasSubstr("a.yaml:2: byte 233 is no UTF-8 here"));
