@@ -2,6 +2,7 @@
 #include "regulator/profile.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace talisman::regulator {
 
@@ -27,6 +28,29 @@ const HardwareProfile& talisman_1996() {
           {"sprite compression", 10, "ratio", "lecture slides of Lastra", false},
           {"compositor band", 32, "lines", "assumption of this model", false},
       }};
+  return profile;
+}
+
+DrawWork draw_work(const DrawCounts& c) {
+  const double edges = std::min(c.pixels, std::sqrt(c.pixels * c.polygons));
+  return {1,
+          c.vertices,
+          edges,
+          c.pixels,
+          c.pixels * c.lights,
+          c.pixels * c.highlights,
+          c.texture_lookups,
+          c.shadow_lookups};
+}
+
+double draw_ms(const DrawWork& terms, const DrawWork& work) {
+  double ns = 0;
+  for (std::size_t k = 0; k < kDrawTerms; ++k) ns += terms[k] * work[k];
+  return 1e-6 * ns;
+}
+
+const SoftwareProfile& software_1() {
+  static const SoftwareProfile profile{"software-1", {29000, 106, 197, 8.2, 8.3, 17, 11.4, 37}};
   return profile;
 }
 

@@ -38,5 +38,33 @@ TEST(ModelledTime, SlowestOfTheParallelStagesDecides) {
   EXPECT_DOUBLE_EQ(modelled_time(p, 0, 0, 0).frame_ms, 0);
 }
 
+TEST(SoftwareProfile, ADrawIsPricedByItsTerms) {
+  DrawCounts counts;
+  counts.vertices = 10;
+  counts.polygons = 4;
+  counts.pixels = 100;
+  counts.lights = 2;
+  counts.highlights = 0.5;
+  counts.texture_lookups = 7;
+  counts.shadow_lookups = 3;
+  const DrawWork work = draw_work(counts);
+  EXPECT_EQ(work, (DrawWork{1, 10, 20, 100, 200, 50, 7, 3})) << "edge pixels: sqrt(100 * 4)";
+  EXPECT_DOUBLE_EQ(draw_ms({1e6, 2e6, 0, 0, 0, 0, 0, 5e6}, work), 1 + 20 + 15);
+}
+
+TEST(SoftwareProfile, EdgesAreAtMostAllPixels) {
+  DrawCounts specks;
+  specks.polygons = 1e6;
+  specks.pixels = 9;
+  EXPECT_EQ(draw_work(specks)[2], 9);
+  EXPECT_EQ(draw_work({}), (DrawWork{1, 0, 0, 0, 0, 0, 0, 0})) << "nothing drawn is a draw all the same";
+}
+
+TEST(SoftwareProfile, NoTermIsNegative) {
+  for (const double ns : software_1().terms) EXPECT_GT(ns, 0);
+  // A square that fills 640x480, one light, no texture: 307,200 of 8.2 + 8.3 ns, 784 edge pixels, one draw.
+  EXPECT_NEAR(draw_ms(software_1().terms, draw_work({4, 2, 307200, 1, 0, 0, 0})), 5.25, 0.01);
+}
+
 }  // namespace
 }  // namespace talisman::regulator
