@@ -284,6 +284,21 @@ TEST(ReadImage, WhatCannotBeReadIsNamed) {
   EXPECT_THROW(read_image(folder.path()), InputError);
 }
 
+// The library's reader reads from no address what is said to be packed in fours, and has 24 bits a pixel.
+TEST(ReadImage, PackedBmpOfOtherBitsIsAnError) {
+  const Folder folder;
+  std::string bmp("BMf\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\4\0\0\0\4\0\0\0\1\0\x18\0\2\0\0\0\x30\0\0\0", 38);
+  bmp.resize(102);
+  for (const char packing : {1, 2}) {
+    bmp[30] = packing;
+    write_text_atomically(folder / "a.bmp", bmp);
+    EXPECT_THAT(
+        message_of<InputError>([&] { read_image(folder / "a.bmp"); }),
+        HasSubstr("a.bmp: cannot be read: a BMP of 24 bits a pixel that says it is packed as one of " +
+                  std::string(packing == 1 ? "8" : "4")));
+  }
+}
+
 // 33 million × 4 pixels by its header, in 54 bytes: the library's reader asks for all of it and throws.
 TEST(ReadImage, HeaderThatAsksForMoreThanThereIsIsAnError) {
   const Folder folder;
