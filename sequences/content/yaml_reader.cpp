@@ -188,6 +188,19 @@ class DocumentLines : public YAML::EventHandler {
   bool is_first_ = false;
 };
 
+/// Is nothing of the text behind the document, by what is seen of it at once? A map whose keys stand in the first column ends with the
+/// text, or at a mark of documents in that column.
+bool is_plainly_all(const YAML::Node& document, const std::string& text) {
+  if (!document.IsMap() || document.Style() != YAML::EmitterStyle::Block || document.size() == 0)
+    return false;
+  if (document.begin()->first.Mark().column != 0) return false;
+  for (const char* mark : {"---", "..."})
+    if (text.rfind(mark, 0) == 0 || text.find(std::string("\n") + mark) != std::string::npos ||
+        text.find(std::string("\r") + mark) != std::string::npos)
+      return false;
+  return true;
+}
+
 /// There may be no second document. YAML::LoadAll would find out, but makes documents for ever from a comma that begins one.
 void check_documents(const std::string& text, const std::string& file) {
   std::istringstream in(text);
@@ -204,8 +217,8 @@ void check_documents(const std::string& text, const std::string& file) {
 YamlMap read_yaml_text(const std::string& text, const std::string& file) {
   check_encoding(text, file);
   try {
-    check_documents(text, file);
     const YAML::Node document = YAML::Load(text);
+    if (!is_plainly_all(document, text)) check_documents(text, file);
     if (document.IsNull()) throw InputError("is empty, rule: a sequence file is a YAML map", file);
     if (!document.IsMap())
       throw InputError("is not a map of keys and values, rule: a sequence file is a YAML map", file, 1);

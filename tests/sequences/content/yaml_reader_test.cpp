@@ -34,6 +34,16 @@ TEST(ReadYaml, SecondDocumentIsRefusedWhereItBegins) {
   EXPECT_THAT(error_of("a: 1\n---\n"), HasSubstr("a second document")) << "an empty one is one";
 }
 
+// Content behind the first document that no mark sets apart is not left out in silence.
+TEST(ReadYaml, SecondDocumentWithoutAMarkIsRefused) {
+  for (const char* text :
+       {"{a: 1}\nb: 2\n", "  a: 1\nb: 2\n", "&x\n  a: 1\nb: 2\n", "\"a\"\nb: 2\n", "[1]\nb: 2\n",
+        "--- {a: 1}\n--- {b: 2}\n", "a: 1\r---\rb: 2\r", "\xEF\xBB\xBF---\na: 1\n---\nb: 2\n"})
+    EXPECT_THAT(error_of(text), HasSubstr("a.yaml:")) << text;
+  EXPECT_EQ(error_of("---\na: 1\n"), "") << "the mark of the only one";
+  EXPECT_EQ(error_of("a: |\n  ---\n  x\n"), "") << "a mark within a text is none";
+}
+
 // The library's LoadAll makes documents from it until memory ends.
 TEST(ReadYaml, CommaBehindAnAnchorEnds) {
   EXPECT_THAT(error_of("&r(aFme!Fme!sbackg, esha 11\nha 11\n"), HasSubstr("a.yaml:"));
