@@ -47,10 +47,13 @@ std::string said(const Use& use) {
 /// Empty, or why the library's reader of BMP must not see a file that begins like this: told that runs of 4 or 8 bits are packed where
 /// pixels have others, it reads from no address.
 std::string defect_of_bmp(std::span<const std::uint8_t> head) {
-  constexpr std::size_t kBits = 28, kPacking = 30, kSeen = 34;
+  constexpr std::size_t kHeader = 14, kBits = 28, kPacking = 30, kSeen = 34;
+  constexpr std::uint32_t kLeastThatSays = 40;  // shorter headers do not have the word; pixels may lie there
   if (head.size() < kSeen || head[0] != 'B' || head[1] != 'M') return "";
   std::uint16_t bits = 0;
-  std::uint32_t packing = 0;
+  std::uint32_t header = 0, packing = 0;
+  std::memcpy(&header, &head[kHeader], sizeof header);
+  if (header < kLeastThatSays) return "";
   std::memcpy(&bits, &head[kBits], sizeof bits);
   std::memcpy(&packing, &head[kPacking], sizeof packing);
   const bool fits = (packing != 1 || bits == 8) && (packing != 2 || bits == 4);
@@ -60,7 +63,7 @@ std::string defect_of_bmp(std::span<const std::uint8_t> head) {
 }
 
 std::string defect_of_bmp(const std::string& path) {
-  std::array<std::uint8_t, 64> head{};
+  std::array<std::uint8_t, 34> head{};
   std::ifstream in(path, std::ios::binary);
   in.read(reinterpret_cast<char*>(head.data()), head.size());
   return defect_of_bmp(std::span(head).first(static_cast<std::size_t>(in.gcount())));

@@ -299,6 +299,18 @@ TEST(ReadImage, PackedBmpOfOtherBitsIsAnError) {
   }
 }
 
+// The header of OS/2 has 12 bytes and says nothing of packing: where others say it, two dark pixels lie.
+TEST(ReadImage, BmpWithAShortHeaderIsReadWhateverItsPixels) {
+  const Folder folder;
+  std::string bmp("BM\x32\0\0\0\0\0\0\0\x1A\0\0\0\x0C\0\0\0\4\0\2\0\1\0\x18\0", 26);
+  const std::string rows("\x0A\x14\x1E\0\1\0\0\0\0\0\0\0", 12);  // blue first, the lowest line first
+  bmp += rows + rows;
+  write_text_atomically(folder / "a.bmp", bmp);
+  EXPECT_EQ(read_image(folder / "a.bmp").rgb,
+            (std::vector<std::uint8_t>{30, 20, 10, 0, 1, 0, 0, 0, 0, 0, 0, 0,
+                                       30, 20, 10, 0, 1, 0, 0, 0, 0, 0, 0, 0}));
+}
+
 // 33 million × 4 pixels by its header, in 54 bytes: the library's reader asks for all of it and throws.
 TEST(ReadImage, HeaderThatAsksForMoreThanThereIsIsAnError) {
   const Folder folder;
