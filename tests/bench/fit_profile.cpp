@@ -265,7 +265,10 @@ void print_errors(const std::string& name, const std::vector<MeasuredDraw>& draw
 
 void write_draws(const char* file, const std::vector<MeasuredDraw>& draws) {
   std::FILE* out = std::fopen(file, "w");
-  if (!out) return;
+  if (!out) {
+    std::fprintf(stderr, "error: %s: cannot be written\n", file);
+    std::exit(1);
+  }
   std::fprintf(out, "sequence,frame,layer,ms");
   for (const std::string_view term : regulator::kDrawTermNames)
     std::fprintf(out, ",%s", std::string(term).c_str());
@@ -316,11 +319,11 @@ int fit(int frames, const char* csv) {
   for (std::size_t k = 0; k < kDrawTerms; ++k)
     std::printf("%-16s %10.1f %12.1f\n", std::string(regulator::kDrawTermNames[k]).c_str(), terms[k],
                 committed[k]);
-  for (const DrawWork& of : {terms, committed}) {
-    std::printf("\n%s\n%-16s %6s %10s %8s %9s %7s %10s %7s\n", &of == &terms ? "" : "error, %", "", "draws",
+  for (const auto& [whose, of] : {std::pair("fitted", &terms), std::pair("committed", &committed)}) {
+    std::printf("\nerror of the %s terms, %%\n%-16s %6s %10s %8s %9s %7s %10s %7s\n", whose, "", "draws",
                 "ms", "mod/meas", "draw med", "p95", "frame med", "p95");
-    print_by_sequence("FITTED", fitted, of);
-    print_by_sequence("HELD OUT", held_out, of);
+    print_by_sequence("FITTED", fitted, *of);
+    print_by_sequence("HELD OUT", held_out, *of);
   }
   return 0;
 }
