@@ -248,6 +248,15 @@ class BandCompositor {
     return false;
   }
 
+  /// Counts the pixels of strips that are hidden, and leaves them out; true where that is all of them.
+  template <typename Positions>
+  bool leave_out_all(Strips hidden, Positions& positions) {
+    if (hidden == 0) return false;
+    const std::int64_t left_out = leave_out(hidden, positions);
+    counters_.pixels_hidden += left_out;
+    return left_out == positions.pixel_count;
+  }
+
   void lay_whole_texels(const Visible& v, const Tile& tile, Strips hidden) {
     const LatticeReach reach = lattice_reach(*v.lattice, v.sprite->size_px(), tile.rect());
     if (!count(reach, *v.sprite)) return;
@@ -267,7 +276,7 @@ class BandCompositor {
   void lay_affine(const Visible& v, const Tile& tile, Strips hidden) {
     AffineLines lines = affine_lines(v, tile);
     if (!count(lines, *v.sprite)) return;
-    if (hidden != 0) counters_.pixels_hidden += leave_out(hidden, lines);
+    if (leave_out_all(hidden, lines)) return;
     if (!window_.gather(*v.sprite, lines.bounds.rect)) {
       PixelTaps taps;
       locate_minified(lines.job, tile, taps);
@@ -284,7 +293,7 @@ class BandCompositor {
     PixelTaps taps;
     locate_perspective(v, tile, taps);
     if (!count(taps, *v.sprite)) return;
-    if (hidden != 0) counters_.pixels_hidden += leave_out(hidden, taps);
+    if (leave_out_all(hidden, taps)) return;
     if (window_.gather(*v.sprite, taps.bounds.rect)) {
       blend_pixels(WindowSource{window_}, taps, v.multiplier, tile);
     } else {
